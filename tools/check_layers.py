@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Checks that includes point the way the architecture says, and that the tree is as it should be.
+"""Checks that includes point the way the architecture says, that the tree is as it should be, and that no phantom uses a
+mathematical function whose last bit depends on the processor.
 
 tools/check_layers.py               checks the repository; one line per finding, exit status 1 if there is any
 tools/check_layers.py --self-test   proves on a small made-up tree that each rule reports what it forbids
@@ -151,6 +152,14 @@ THIRD_PARTIES = {
     "doctest": (r"doctest", r"tests/"),
 }
 
+# Folders whose results have equal bits on every machine. The last bits of these functions depend on the processor; those
+# of square roots and of rounding do not. engine/volume/procedural/turns.h has a sine and a cosine.
+EQUAL_BITS = ["engine/volume/phantoms", "engine/volume/procedural"]
+UNEQUAL_BITS = re.compile(
+    r"(?<![\w.>])(?:std::|glm::|::)?((?:a?(?:sin|cos|tan)h?|atan2|sincos|exp[2m]?1?|log(?:2|10|1p)?|pow|hypot|cbrt|fma|erfc?|"
+    r"[lt]gamma|radians|degrees|rotate|slerp)[fl]?)\s*\("
+)
+
 TOP_LEVEL_FILES = {"CMakeLists.txt", "CMakePresets.json", "DECISIONS.md", "LICENSE", "README.md"}
 TOP_LEVEL_FOLDERS = {"assets", "engine", "haptics", "shaders", "tests", "tools", "ui"}
 
@@ -212,6 +221,15 @@ def check_arrows(includes, rooms):
             for name, (header, place) in THIRD_PARTIES.items():
                 if re.match(header, spelled) and not re.match(place, str(file)):
                     yield f"{file}:{line}: {name} ({spelled}) may be included only in {place}"
+
+
+def check_equal_bits(root, files):
+    for file in files:
+        if str(file.parent) not in EQUAL_BITS or file.suffix not in INCLUDING:
+            continue
+        for number, line in enumerate((root / file).read_text(encoding="utf-8").splitlines(), 1):
+            if match := UNEQUAL_BITS.search(line.split("//")[0]):
+                yield f"{file}:{number}: the last bit of {match[1]} depends on the processor; use turns.h or sums and products"
 
 
 def check_table(includes, rooms):
@@ -311,6 +329,7 @@ def check(root, rooms=MAY_INCLUDE, folder_cycles=FOLDER_CYCLES):
     return [
         *findings,
         *check_arrows(includes, rooms),
+        *check_equal_bits(root, files),
         *check_table(includes, rooms),
         *check_cycles(includes),
         *check_folder_cycles(includes, folder_cycles),
@@ -338,6 +357,7 @@ ROOMS = {
 ALLOWED = {
     "engine/base/error.h": "#include <string>",
     "engine/volume/volume.h": '#include "engine/base/error.h"\n#include "shaders/bricks.h"',
+    "engine/volume/phantoms/stem.cpp": "double cos_of(double x); y = std::sqrt(x) + cos_of(x) + vein.exp(x);",
     "engine/formats/readers.h": '#include "engine/volume/volume.h"',
     "engine/formats/tiff/tiff.h": '#include "engine/formats/readers.h"',
     "engine/gpu/device.h": "#include <vulkan/vulkan.h>",
@@ -364,6 +384,8 @@ FORBIDDEN = [
     ("engine/volume/bad.h", "#include <nlohmann/json.hpp>", "nlohmann/json"),
     ("engine/volume/bad.cpp", '#include "ui/window.h"', '"ui/window.h" is no file of ours'),
     ("tools/bad.cpp", "#include <CLI/CLI.hpp>", "CLI11"),
+    ("engine/volume/phantoms/bad.cpp", "// cos(x)\ny = 2 * std::cos(x);", "bad.cpp:2: the last bit of cos depends"),
+    ("engine/volume/procedural/bad.h", "return expf (x);", "bad.h:1: the last bit of expf depends"),
     ("engine/base/error.h", '#include "error.h"', "cycle of includes: engine/base/error.h -> engine/base/error.h"),
     ("engine/new/bad.h", "", "room engine/new is not in the table"),
     ("notes.txt", "", "notes.txt: does not belong at the top level"),

@@ -7,7 +7,7 @@
 #include "engine/base/error.h"
 #include "engine/volume/phantoms/capitulum_form.h"
 #include "engine/volume/phantoms/phantom_model.h"
-#include "engine/volume/phantoms/turns.h"
+#include "engine/volume/procedural/turns.h"
 
 namespace shvr {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "engine/base/error.h"
-#include "engine/volume/phantoms/turns.h"
+#include "engine/volume/procedural/turns.h"
 
 namespace shvr {
 

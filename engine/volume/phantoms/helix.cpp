@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/volume/phantoms/phantom_model.h"
-#include "engine/volume/phantoms/turns.h"
+#include "engine/volume/procedural/turns.h"
 
 namespace shvr {
 

@@ -5,8 +5,8 @@
 
 #include "engine/volume/phantoms/phantom_model.h"
 #include "engine/volume/phantoms/texture.h"
-#include "engine/volume/phantoms/turns.h"
 #include "engine/volume/procedural/procedural_hash.h"
+#include "engine/volume/procedural/turns.h"
 
 namespace shvr {
 

@@ -7,7 +7,7 @@
 
 #include "engine/volume/phantoms/bodies.h"
 #include "engine/volume/phantoms/texture.h"
-#include "engine/volume/phantoms/turns.h"
+#include "engine/volume/procedural/turns.h"
 
 namespace shvr {
 

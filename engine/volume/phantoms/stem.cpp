@@ -5,7 +5,7 @@
 
 #include "engine/volume/phantoms/phantom_model.h"
 #include "engine/volume/phantoms/texture.h"
-#include "engine/volume/phantoms/turns.h"
+#include "engine/volume/procedural/turns.h"
 
 namespace shvr {
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/volume/procedural/procedural_kind.h"
+#include "engine/volume/procedural/turns.h"
 
 namespace shvr {
 namespace {
@@ -75,10 +76,10 @@ public:
     {
         const glm::dvec3 p = scale_ * voxel - 1.0;
         const double radius = std::sqrt(p.x * p.x + p.y * p.y);
-        const double ring_slope = ALPHA * std::sin(2.0 * PI * FREQUENCY * std::cos(0.5 * PI * radius)) * PI * PI *
-                                  FREQUENCY * std::sin(0.5 * PI * radius);
+        const glm::dvec2 bend = direction_of(0.25 * radius);
+        const double ring_slope = ALPHA * direction_of(FREQUENCY * bend.x).y * PI * PI * FREQUENCY * bend.y;
         const glm::dvec2 outward = radius > 0.0 ? glm::dvec2(p) / radius : glm::dvec2(0.0);
-        const glm::dvec3 slope(ring_slope * outward, -0.5 * PI * std::cos(0.5 * PI * p.z));
+        const glm::dvec3 slope(ring_slope * outward, -0.5 * PI * direction_of(0.25 * p.z).x);
         return FULL / (2.0 * (1.0 + ALPHA)) * slope * scale_;
     }
 
@@ -118,9 +119,9 @@ private:
         const double px = scale_.x * x - 1.0;
         const double py = scale_.y * y - 1.0;
         const double radius = std::sqrt(px * px + py * py);
-        return ALPHA * (1.0 + std::cos(2.0 * PI * FREQUENCY * std::cos(0.5 * PI * radius)));
+        return ALPHA * (1.0 + direction_of(FREQUENCY * direction_of(0.25 * radius).x).x);
     }
-    double wave(double z) const { return 1.0 - std::sin(0.5 * PI * (scale_.z * z - 1.0)); }
+    double wave(double z) const { return 1.0 - direction_of(0.25 * (scale_.z * z - 1.0)).y; }
     double sum(double ring, double wave) const { return FULL * ((wave + ring) / (2.0 * (1.0 + ALPHA))); }
 
     glm::dvec3 scale_;  ///< voxel -> [-1,1]
