@@ -14,7 +14,7 @@ namespace {
 constexpr std::string_view SEGMENT = "Segment";
 constexpr int64_t MAX_SEGMENTS = 1 << 20;
 
-/// Backslashes and line ends are escaped in values.
+/// Backslashes and line ends are escaped in keys and values.
 std::string unescaped(std::string_view text)
 {
     std::string plain;
@@ -41,7 +41,7 @@ std::string escaped(std::string_view text)
 }
 
 /// Splits "Segment3_Name" into its number and the rest, "Name"; null for other keys.
-std::optional<std::pair<int64_t, std::string_view>> segment_key(std::string_view key)
+std::optional<std::pair<int64_t, std::string_view>> parts_of_key(std::string_view key)
 {
     if (!key.starts_with(SEGMENT)) return std::nullopt;
     key.remove_prefix(SEGMENT.size());
@@ -72,7 +72,11 @@ std::optional<NrrdHead> read_nrrd_head(const std::filesystem::path& path)
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(path, ignored) || !read_head(path, 4).starts_with("NRRD"))
         return std::nullopt;
-    const std::string text = read_head(path);
+    return nrrd_head_in(read_head(path));
+}
+
+std::optional<NrrdHead> nrrd_head_in(std::string_view text)
+{
     std::string_view rest = text;
     const std::string_view magic = take_line(rest);
     if (magic.size() != 8 || !magic.starts_with("NRRD000") || magic[7] < '1' || magic[7] > '6') return std::nullopt;
@@ -84,11 +88,12 @@ std::optional<NrrdHead> read_nrrd_head(const std::filesystem::path& path)
         if (line.starts_with('#')) {
             head.comments.emplace_back(line);
         } else if (colon != std::string_view::npos && line.substr(colon).starts_with(":=")) {
-            head.pairs.push_back({std::string(line.substr(0, colon)), unescaped(line.substr(colon + 2))});
+            head.pairs.push_back({unescaped(line.substr(0, colon)), unescaped(line.substr(colon + 2))});
         } else if (colon != std::string_view::npos) {
             const std::string name = lower_case(trimmed(line.substr(0, colon)));
             head.fields.push_back({name, std::string(trimmed(line.substr(colon + 1)))});
-            if (name == "data file" || name == "datafile") break;  // names may follow
+            const bool names_files = name == "data file" || name == "datafile";
+            if (names_files && head.fields.back().value.starts_with("LIST")) break;  // names follow
         }
     }
     return head;
@@ -97,6 +102,15 @@ std::optional<NrrdHead> read_nrrd_head(const std::filesystem::path& path)
 std::string spelled(const NrrdPair& pair)
 {
     return escaped(pair.key) + ":=" + escaped(pair.value);
+}
+
+std::vector<std::string> lines_of(const NrrdHead& head)
+{
+    std::vector<std::string> lines{sentence("NRRD000", head.version)};
+    lines.insert(lines.end(), head.comments.begin(), head.comments.end());
+    for (const NrrdPair& pair : head.pairs) lines.push_back(spelled(pair));
+    for (const NrrdPair& field : head.fields) lines.push_back(field.key + ": " + field.value);  // a list ends them
+    return lines;
 }
 
 void set_pair(std::vector<NrrdPair>& pairs, std::string_view key, std::string value)
@@ -112,7 +126,7 @@ std::vector<NrrdSegment> segments_of(const NrrdHead& head)
 {
     std::vector<NrrdSegment> segments;
     for (const NrrdPair& pair : head.pairs) {
-        const auto key = segment_key(pair.key);
+        const auto key = parts_of_key(pair.key);
         if (!key) continue;
         auto found = std::ranges::find(segments, key->first, &NrrdSegment::number);
         if (found == segments.end())
@@ -124,6 +138,20 @@ std::vector<NrrdSegment> segments_of(const NrrdHead& head)
     }
     assign_groups(segments);
     return segments;
+}
+
+std::vector<NrrdPair> pairs_of(const NrrdHead& head, const NrrdSegment& segment)
+{
+    std::vector<NrrdPair> pairs;
+    for (const NrrdPair& pair : head.pairs)
+        if (const auto key = parts_of_key(pair.key); key && key->first == segment.number)
+            pairs.push_back({std::string(key->second), pair.value});
+    return pairs;
+}
+
+std::string segment_key(const NrrdSegment& segment, std::string_view name)
+{
+    return sentence(SEGMENT, segment.number, "_", name);
 }
 
 }  // namespace shvr

@@ -22,10 +22,15 @@ struct NrrdHead {
     std::vector<std::string> comments{};  ///< with their '#'
     std::vector<NrrdPair> fields{};       ///< "field: value"; names in lower case
     std::vector<NrrdPair> pairs{};        ///< "key:=value", unescaped
+    bool operator==(const NrrdHead&) const = default;
 };
 
 /// Null if there is no such file, or it is not NRRD. Lines that are not comments, fields or pairs are left out.
 std::optional<NrrdHead> read_nrrd_head(const std::filesystem::path& path);
+/// The header at the start of a text; null if it is not NRRD.
+std::optional<NrrdHead> nrrd_head_in(std::string_view text);
+/// The lines from which `nrrd_head_in` reads an equal header.
+std::vector<std::string> lines_of(const NrrdHead& head);
 /// "key:=value", escaped.
 std::string spelled(const NrrdPair& pair);
 /// Sets the value of a key, or adds it at the end.
@@ -44,5 +49,8 @@ struct NrrdSegment {
 };
 /// The segments in the order of their first keys in the header.
 std::vector<NrrdSegment> segments_of(const NrrdHead& head);
+/// The pairs of a segment, without "Segment3_" in their keys.
+std::vector<NrrdPair> pairs_of(const NrrdHead& head, const NrrdSegment& segment);
+std::string segment_key(const NrrdSegment& segment, std::string_view name);
 
 }  // namespace shvr

@@ -59,6 +59,7 @@ const std::set<std::string, std::less<>> OWN_KEYS{
     "shvr.journal.name",
     "shvr.journal.record",
     "shvr.journal.checksum",
+    "shvr.nrrd_header",
     "shvr_placement",
     "shvr_placement.frame",
     "shvr_placement.directions",

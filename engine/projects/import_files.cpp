@@ -59,8 +59,11 @@ void describe_labels(const LabelImage& labels, Json& label, Json& attributes)
     if (!colors.empty()) label["colors"] = colors;
     if (!properties.empty()) label["properties"] = properties;
     if (!labels.source.empty()) label["source"] = {{"image", labels.source}};
+    if (labels.header) attributes["shvr"]["nrrd_header"] = lines_of(*labels.header);
     if (labels.painted_on.empty()) return;
-    Json& ours = attributes["shvr"] = {{"shvr_mask", 1}, {"image", labels.painted_on}};
+    Json& ours = attributes["shvr"];
+    ours["shvr_mask"] = 1;
+    ours["image"] = labels.painted_on;
     if (!labels.journal) return;
     // A file's name need not be valid UTF-8.
     const Json name = Json::parse(Json(labels.journal->name).dump(-1, ' ', false, Json::error_handler_t::replace));

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "engine/base/error.h"
+#include "engine/formats/nrrd_head.h"
 #include "engine/formats/zarr/metadata/zarr_metadata.h"
 #include "engine/formats/zarr/ome_zarr.h"
 #include "engine/projects/import_prepare.h"
@@ -58,6 +59,9 @@ struct LabelImage {
         std::string checksum_digits() const;
     };
     std::optional<Journal> journal{};  ///< stated only if `painted_on` is stated
+    /// The header of an NRRD mask that these labels replace or began with: it may describe segments in words that SHVR
+    /// does not understand, for a later export. Null: none.
+    std::optional<NrrdHead> header{};
 };
 
 struct ImportOptions {

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "engine/annotation/files/mask_export.h"
+#include "engine/annotation/files/mask_segments.h"
 #include "engine/annotation/files/offset_export.h"
 #include "engine/annotation/measures/measures.h"
 #include "engine/annotation/patterns/head.h"
@@ -117,12 +118,13 @@ AnnotationSnapshot::AnnotationSnapshot(const AnnotationView& view)
       volume_hash_(view.volume_hash),
       project_(view.project),
       volume_path_(view.volume_path),
-      trace_path_(view.trace_path)
+      trace_path_(view.trace_path),
+      mask_path_(view.mask_path)
 {}
 
 AnnotationView AnnotationSnapshot::view() const
 {
-    return {volume_, mask_, density_, trace_, groups_, volume_hash_, project_, volume_path_, trace_path_};
+    return {volume_, mask_, density_, trace_, groups_, volume_hash_, project_, volume_path_, trace_path_, mask_path_};
 }
 
 void check(const ExportTask& task)
@@ -196,7 +198,9 @@ ExportResult run(const ExportTask& asked, const AnnotationView& annotation, Prog
     for (const std::filesystem::path& path : {task.mask, project_labels(task, annotation.project)}) {
         if (path.empty()) continue;
         export_mask(path, annotation.mask, annotation.volume,
-                    {.colors = label_looks(annotation.groups, annotation.mask), .painted_on = annotation.volume_hash},
+                    {.colors = label_looks(annotation.groups, annotation.mask),
+                     .painted_on = annotation.volume_hash,
+                     .header = mask_header(annotation.mask_path)},
                     task.version, begin(path));
         note(path);
     }

@@ -50,6 +50,7 @@ struct AnnotationView {
     std::filesystem::path project{};      ///< path as it was opened; for `labels`
     std::filesystem::path volume_path{};  ///< as Session::volume_path; no output may replace it
     std::filesystem::path trace_path{};   ///< path as in Session::trace_path; used in messages if there is no trace
+    std::filesystem::path mask_path{};    ///< the mask whose header an export keeps (mask_segments.h); may be missing
 };
 
 /// An independent copy of the annotation. Any thread may read and destroy it.
@@ -67,7 +68,7 @@ private:
     TraceGraph trace_;
     Groups groups_;
     std::string volume_hash_;
-    std::filesystem::path project_, volume_path_, trace_path_;
+    std::filesystem::path project_, volume_path_, trace_path_, mask_path_;
 };
 
 struct ExportResult {

@@ -341,5 +341,36 @@ class Export(CliTest):
         self.assertEqual(self.export()["nodes"], 0)
 
 
+class Segmentation(CliTest):
+    TAGS = "Segment0_Tags:=TerminologyEntry:Segmentation category^SCT^123037004|"
+    SIZE = [8, 8, 8]
+
+    def header(self, name):
+        return (self.folder / name).read_bytes().split(b"\n\n")[0].decode().split("\n")
+
+    # Kind (Masks): exports of work on a segmentation of 3D Slicer, by its own name and through label images
+    def test_exports_keep_what_a_segmentation_states(self):
+        header = ("NRRD0004\ntype: uint8\ndimension: 3\nsizes: 8 8 8\nspacings: 1 1 1\nencoding: raw\n"
+                  f"Segment0_LabelValue:=1\nSegment0_Name:=xylem\n{self.TAGS}\nlab:=two roots\n\n")
+        (self.folder / "cells.seg.nrrd").write_bytes(header.encode() + bytes(511) + b"\1")
+        session = self.write_session(volume={"procedural": "constant", "size": self.SIZE},
+                                     annotation={"mask": "cells.seg.nrrd"})
+        script = self.write_script("script.jsonl", [
+            {"op": "paint", "brush": "fill", "region": "box", "group": 3, "threshold": 0, "radius": 1,
+             "path": [[4, 4, 4]]}, {"op": "save"}])
+        for name in ["a.seg.nrrd", "labels.zarr"]:
+            self.check("export", session, "--mask", self.folder / name)
+        self.check("annotate", session, "--script", script)
+        labels = self.write_session("labels.json", volume={"procedural": "constant", "size": self.SIZE},
+                                    annotation={"mask": "labels.zarr"})
+        self.check("annotate", labels, "--script", script)  # a save over the labels
+        for name in ["b.seg.nrrd", "b.nrrd"]:
+            self.check("export", labels, "--mask", self.folder / name)
+        for name in ["cells.seg.nrrd", "a.seg.nrrd", "b.seg.nrrd", "b.nrrd"]:
+            with self.subTest(name=name):
+                self.assertLessEqual({self.TAGS, "Segment0_Name:=xylem", "lab:=two roots"}, set(self.header(name)))
+                self.assertEqual("Segment1_LabelValue:=3" in self.header(name), name != "a.seg.nrrd")
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -2,6 +2,7 @@
 
 #include "engine/session/label_looks.h"
 
+#include "engine/annotation/files/mask_segments.h"
 #include "engine/base/error.h"
 #include "engine/formats/zarr/ome_zarr_labels.h"
 #include "tests/fuzz/support/attempt.h"
@@ -26,6 +27,12 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
             if (group.opacity) expect(is_share(*group.opacity), "an opacity that is no share");
             if (group.color)
                 for (int i = 0; i < 3; ++i) expect(is_share((*group.color)[i]), "a colour that is no light");
+        }
+        if (const std::optional<NrrdHead> head = mask_header(folder.path() / "bundles")) {
+            std::string text;
+            for (const std::string& line : lines_of(*head)) text += line + "\n";
+            const std::optional<NrrdHead> again = nrrd_head_in(text);
+            expect(again && segments_of(*again).size() == segments_of(*head).size(), "another header than was read");
         }
         // The groups' looks are written as they were read.
         for (const LabelImage::Color& look : label_looks(groups, Mask(Size3(1))))

@@ -542,6 +542,8 @@ def make_label_looks():
                             "properties": [{"label-value": "1", "name": 5}]}}.items():
         seed("label_looks", name, json.dumps({"image-label": content}))
     seed("label_looks", "no_image", "{}")
+    header = ["NRRD0005", "# made elsewhere", "Segment3_LabelValue:=1", "Segment3_Tags:=a\\\\b|", "content: a root"]
+    seed("label_looks", "header", json.dumps({"image-label": {}, "shvr": {"shvr_mask": 1, "nrrd_header": header}}))
 
 
 def make_project():

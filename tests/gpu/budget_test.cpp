@@ -189,6 +189,7 @@ TEST_CASE("a ray passes more bricks than there is room for")
     }
 }
 
+// Kind (Drivers): ambient occlusion at the smallest budget of device memory
 TEST_CASE("light that comes from more bricks than there is room for is told, and the picture is drawn without it")
 {
     // 125 bricks, all of them within two of the middle one.

@@ -83,7 +83,8 @@ void run_export(const ExportCommandOptions& options)
                                     .volume_hash = opened.session.volume_hash,
                                     .project = options.project,
                                     .volume_path = opened.session.volume_path,
-                                    .trace_path = opened.session.trace_path};
+                                    .trace_path = opened.session.trace_path,
+                                    .mask_path = work.mask_of_header()};
     const ExportResult result = run(task, annotation, long_work, [&](const ExportResult& so_far) {
         // The trace is written first.
         if (so_far.written.size() == 1) warn(so_far.left_out, options.common);

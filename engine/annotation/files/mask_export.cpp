@@ -11,8 +11,6 @@ namespace shvr {
 
 namespace {
 
-const std::vector<NrrdPair> NO_PAIRS;
-
 bool is_nrrd(const std::filesystem::path& path)
 {
     return lower_case(path.extension().string()) == ".nrrd";
@@ -33,15 +31,24 @@ std::string export_mask(const std::filesystem::path& path, const Mask& mask, con
         fail(path.string(), ": has the extension ", in_quotes(path.extension().string()),
              "; expected .mask, .nrrd, .tif or .zarr");
     const MaskSource groups(mask, volume);
-    if (is_label_image(path))
+    const std::optional<NrrdHead> header = header_to_keep(path, image.header);
+    if (is_label_image(path)) {
+        LabelImage described = image;
+        described.header = header;
         return save_label_image(
-            groups, path, image,
+            groups, path, described,
             {.version = version, .progress = [&](const ImportProgress& done) { tell(progress, done.fraction); }},
             foreign);
-    if (is_volume_export(path))
-        export_volume(path, groups, progress, is_nrrd(path) ? segment_pairs(path, mask, image.colors) : NO_PAIRS);
-    else
+    }
+    if (is_nrrd(path)) {
+        NrrdHead head = header.value_or(NrrdHead{});
+        describe_segments(head, path, mask, image.colors);
+        export_volume(path, groups, progress, head);
+    } else if (is_volume_export(path)) {
+        export_volume(path, groups, progress);
+    } else {
         save_mask(path, mask, progress);
+    }
     return {};
 }
 

@@ -9,6 +9,7 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/formats/open_volume.h"
+#include "engine/formats/zarr/ome_zarr_labels.h"
 #include "engine/volume/grid.h"
 
 namespace shvr {
@@ -78,18 +79,59 @@ VolumeInfo info_of_groups(const std::filesystem::path& path)
     return info;
 }
 
+void add_missing_segments(NrrdHead& head, const NrrdHead& earlier)
+{
+    const std::vector<NrrdSegment> segments = segments_of(head);
+    int64_t next = 0;
+    for (const NrrdSegment& segment : segments) next = std::max(next, segment.number + 1);
+    for (NrrdSegment segment : segments_of(earlier)) {
+        const std::vector<NrrdPair> pairs = pairs_of(earlier, segment);
+        const auto found = std::ranges::find(segments, segment.group, &NrrdSegment::group);
+        const bool is_new = found == segments.end();
+        segment.number = is_new ? next++ : found->number;
+        const std::vector<NrrdPair> known = is_new ? std::vector<NrrdPair>() : pairs_of(head, *found);
+        for (const NrrdPair& pair : pairs)
+            if (std::ranges::find(known, pair.key, &NrrdPair::key) == known.end())
+                head.pairs.push_back({segment_key(segment, pair.key), pair.value});
+        if (!is_new) continue;
+        // The number of a group is its label value in a single layer.
+        set_pair(head.pairs, segment_key(segment, "LabelValue"), std::to_string(segment.group));
+        set_pair(head.pairs, segment_key(segment, "Layer"), "0");
+    }
+}
+
 }  // namespace
 
-std::vector<NrrdPair> segment_pairs(const std::filesystem::path& path, const Mask& mask,
-                                    const std::vector<LabelImage::Color>& looks)
+std::optional<NrrdHead> mask_header(const std::filesystem::path& mask)
 {
-    const NrrdHead head = read_nrrd_head(path).value_or(NrrdHead{});
+    if (mask.empty()) return std::nullopt;
+    try {
+        if (std::optional<NrrdHead> head = read_nrrd_head(mask)) return head;
+        std::string text;
+        for (const std::string& line : read_label_header(mask)) text += line + "\n";
+        return nrrd_head_in(text);
+    } catch (const Error&) {
+        return std::nullopt;  // the mask's reader reports the details
+    }
+}
+
+std::optional<NrrdHead> header_to_keep(const std::filesystem::path& path, const std::optional<NrrdHead>& earlier)
+{
+    std::optional<NrrdHead> head = mask_header(path);
+    if (!head) return earlier;
+    if (earlier && *earlier != *head) add_missing_segments(*head, *earlier);
+    return head;
+}
+
+void describe_segments(NrrdHead& head, const std::filesystem::path& path, const Mask& mask,
+                       const std::vector<LabelImage::Color>& looks)
+{
     std::vector<NrrdSegment> segments = segments_of(head);
-    if (segments.empty() && !lower_case(path.filename().string()).ends_with(".seg.nrrd")) return {};
+    if (segments.empty() && !lower_case(path.filename().string()).ends_with(".seg.nrrd")) return;
     const bool is_new = segments.empty();
-    std::vector<NrrdPair> pairs;
+    std::vector<NrrdPair>& pairs = head.pairs;
     const auto set = [&](const NrrdSegment& segment, const char* key, std::string value) {
-        set_pair(pairs, sentence("Segment", segment.number, "_", key), std::move(value));
+        set_pair(pairs, segment_key(segment, key), std::move(value));
     };
     int64_t next = 0;
     for (const NrrdSegment& segment : segments) next = std::max(next, segment.number + 1);
@@ -127,7 +169,6 @@ std::vector<NrrdPair> segment_pairs(const std::filesystem::path& path, const Mas
         set_pair(pairs, "Segmentation_ContainedRepresentationNames", "Binary labelmap|");
         set_pair(pairs, "Segmentation_MasterRepresentation", "Binary labelmap");
     }
-    return pairs;
 }
 
 LayeredMask::LayeredMask(const std::filesystem::path& path, int64_t layers, const std::vector<NrrdSegment>& segments)

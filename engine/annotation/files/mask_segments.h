@@ -1,10 +1,12 @@
 #pragma once
-// A mask as a 3D Slicer segmentation (.seg.nrrd): each group is a segment with a name, a colour and an extent.
+// A mask as a 3D Slicer segmentation (.seg.nrrd): each group is a segment with a name, a colour and an extent. What the
+// header of an NRRD mask states beyond them is kept.
 
 #include <array>
 #include <atomic>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,11 +17,18 @@
 
 namespace shvr {
 
-/// Returns the key/value pairs to set in the NRRD file at `path` when this mask replaces its voxels. Existing segments
-/// keep their numbers and all other keys; groups without a segment get a new one. Returns an empty list unless the name
-/// ends in .seg.nrrd or the present file has segments. `looks`: names and colours of groups.
-std::vector<NrrdPair> segment_pairs(const std::filesystem::path& path, const Mask& mask,
-                                    const std::vector<LabelImage::Color>& looks);
+/// Returns the header of an NRRD mask, or the one that a label image keeps; null if there is none or it cannot be read.
+/// SHVR does not understand all of it (terminology, keys of other programs), but keeps it in saves and exports.
+std::optional<NrrdHead> mask_header(const std::filesystem::path& mask);
+/// Returns the header that a mask saved as `path` keeps: that of the mask there, with what only `earlier` states of its
+/// segments, and those that only `earlier` has; or else `earlier`. Segments of the same group are the same.
+std::optional<NrrdHead> header_to_keep(const std::filesystem::path& path, const std::optional<NrrdHead>& earlier);
+
+/// Describes the groups of this mask as segments in the header of an NRRD file. Segments that `head` has keep their
+/// numbers and all other keys; groups without a segment get a new one. Changes nothing unless the name of the file ends
+/// in .seg.nrrd or the header has segments. `looks`: names and colours of groups.
+void describe_segments(NrrdHead& head, const std::filesystem::path& path, const Mask& mask,
+                       const std::vector<LabelImage::Color>& looks);
 
 /// Merges the layers of a segmentation, whose segments may overlap, into one volume of groups. A voxel gets the group
 /// of its segment (NrrdSegment::group); if several segments contain the voxel, the segment in the last layer wins.

@@ -130,6 +130,11 @@ const fs::path& file_to_read(const WorkFiles& files, Part part)
     return is_saved ? file_of(files, part) : files.mask_to_read;
 }
 
+const fs::path& mask_of_header(const WorkFiles& files)
+{
+    return files.mask_before.empty() ? file_to_read(files, Part::mask) : files.mask_before;
+}
+
 LoadNotes load(Part part, const WorkFiles& files, Document& into)
 {
     const TraceSpace space = space_of(files.volume);

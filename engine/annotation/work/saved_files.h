@@ -22,6 +22,9 @@ struct WorkFiles {
     /// A mask in a read-only format, with which the work starts as long as `mask` has not been saved; empty if there is
     /// none. Set by `Work`, which then also gives `mask` another name (saved_mask_path).
     std::filesystem::path mask_to_read{};
+    /// Another mask whose header the next save keeps (mask_segments.h): the one saved before under another name, or set
+    /// aside, or taken into this work. Set by `Work`.
+    std::filesystem::path mask_before{};
     std::string volume_hash{};  ///< Session::volume_hash
     /// Returns whether `hash` is another hash of the same voxels; may read all voxels. Empty: no other hash is.
     std::function<bool(const std::string& hash)> is_other_name{};
@@ -59,6 +62,8 @@ struct LoadNotes {
 };
 /// The file from which a part is read. For a mask this is `mask_to_read`, if any, until `mask` has been saved.
 const std::filesystem::path& file_to_read(const WorkFiles& files, Part part);
+/// The mask whose header a save or an export keeps; may not exist.
+const std::filesystem::path& mask_of_header(const WorkFiles& files);
 /// Reads the file of a part into a document whose part is empty. Fails if the file is malformed, or belongs to another
 /// volume or image.
 LoadNotes load(Part part, const WorkFiles& files, Document& into);

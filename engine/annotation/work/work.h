@@ -174,6 +174,10 @@ public:
     std::function<void(const WorkFiles& to)> copier(std::vector<LabelImage::Color> looks) const;
     void name_files(const std::filesystem::path& mask, const std::filesystem::path& trace,
                     const std::filesystem::path& density);
+    /// The mask whose header an export keeps (mask_segments.h).
+    const std::filesystem::path& mask_of_header() const { return shvr::mask_of_header(files_); }
+    /// Lets the next save keep the header of a mask that was taken into this work.
+    void keep_header_of(const std::filesystem::path& mask) { files_.mask_before = mask; }
     /// Number of commands, undos and redos since the last save.
     size_t unsaved() const { return unsaved_; }
     /// Whether nothing needs saving: there is no unsaved command, and no file is missing or unreadable.
@@ -366,6 +370,7 @@ private:
     void write(Part part, const Progress& progress);
 
     WorkFiles files_;
+    std::filesystem::path mask_before_;  ///< when the save began
     Document document_{.mask = Mask(Size3(0)), .trace = {}};
     std::vector<LabelImage::Color> looks_;
     std::shared_ptr<Journal> journal_;

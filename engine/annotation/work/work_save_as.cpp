@@ -60,6 +60,7 @@ std::unique_ptr<Work::SavingAs> Work::begin_save_as(const WorkFiles& to, std::ve
     if (has_history) begin_journal();
     std::unique_ptr<SavingAs> saving(new SavingAs);
     saving->files_ = to;
+    saving->files_.mask_before = mask_of_header();
     saving->document_ = document_;
     saving->looks_ = std::move(looks);
     saving->session_ = session;
@@ -148,6 +149,7 @@ Work::Saved Work::end_save_as(SavingAs& saving)
     const WorkFiles before = std::exchange(files_, saving.files_);
     files_.settings = saving.has_session_ ? saving.document_.settings.values() : before.settings;
     files_.kept = saving.has_session_ && keeps_settings_ ? saving.kept_ : before.kept;
+    files_.mask_before.clear();
     files_.normalized = before.normalized;
     files_.normalized_kept = before.normalized_kept;
     known_ = std::move(saving.known_);

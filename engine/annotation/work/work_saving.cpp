@@ -4,6 +4,7 @@
 
 #include "engine/annotation/files/mask_image.h"
 #include "engine/annotation/files/mask_import.h"
+#include "engine/annotation/files/mask_segments.h"
 #include "engine/annotation/files/offset_import.h"
 #include "engine/annotation/work/part_writer.h"
 #include "engine/annotation/work/work.h"
@@ -16,6 +17,7 @@ void Work::name_files(const fs::path& mask, const fs::path& trace, const fs::pat
 {
     const WorkFiles before = files_;
     name_mask(mask);
+    if (files_.mask != before.mask) files_.mask_before = shvr::mask_of_header(before);
     files_.trace = trace;
     files_.density = density;
     for (const Part part : PARTS) {
@@ -63,9 +65,12 @@ std::string write_part(Part part, const Document& document, const WorkFiles& fil
             if (const auto [number, checksum] = journal ? journal->last_durable() : std::pair<RecordNumber, uint64_t>();
                 number > 0)
                 named = {files.journal.filename().string(), number, checksum};
-            std::string kept =
-                save_mask_as(files.mask, document.mask, files.volume,
-                             {.colors = looks, .painted_on = files.volume_hash, .journal = named}, foreign, progress);
+            std::string kept = save_mask_as(files.mask, document.mask, files.volume,
+                                            {.colors = looks,
+                                             .painted_on = files.volume_hash,
+                                             .journal = named,
+                                             .header = mask_header(mask_of_header(files))},
+                                            foreign, progress);
             save_mask_image(files.mask, files.volume_hash, named);
             return kept;
         }
@@ -84,7 +89,8 @@ void Work::write(Part part, const Document& document, const WorkFiles& files,
 
 std::function<void(const WorkFiles&)> Work::copier(std::vector<LabelImage::Color> looks) const
 {
-    return [document = document_, looks = std::move(looks)](const WorkFiles& to) {
+    return [document = document_, looks = std::move(looks), before = mask_of_header()](WorkFiles to) {
+        to.mask_before = before;
         for (const Part part : PARTS)
             if (!file_of(to, part).empty() && (part == Part::mask || holds_any(document, part)))
                 write(part, document, to, looks, nullptr);
@@ -107,6 +113,7 @@ std::unique_ptr<Work::Saving> Work::begin_save(std::vector<LabelImage::Color> lo
     touched_since_saving_ = {};
     std::unique_ptr<Saving> saving(new Saving);
     saving->files_ = files_;
+    saving->mask_before_ = files_.mask_before;
     saving->document_ = document_;
     saving->looks_ = std::move(looks);
     saving->journal_ = journal_;
@@ -152,11 +159,13 @@ void Work::Saving::write(Part part, const Progress& progress)
         throw JournalTaken(sentence(file.string(), ": is not saved, since another process has taken the journal ",
                                     files_.journal.string(), " over; expected this process to be its only writer"));
     if (is_foreign(part))
-        if (const std::optional<fs::path> old = set_aside(file))
+        if (const std::optional<fs::path> old = set_aside(file)) {
+            if (part == Part::mask) files_.mask_before = *old;
             saved_.notices.push_back({sentence(file.string(), ": was written by another program; expected the ",
                                                name_of(part), " as this one knows it; it is kept as ", old->string(),
                                                ", and what is saved is this program's"),
                                       true});
+        }
     // If false, the file (if any) is from an interrupted save, or from a program that wrote the same content.
     const bool is_last_save = seen.digest && seen.digest == digest_of(known_, part);
     try {
@@ -209,6 +218,8 @@ Work::Saved Work::end_save(Saving& saving)
     saving.hold_.reset();
     seen_ = saving.seen_;
     for (const Part part : PARTS) digest_of(known_, part) = digest_of(saving.known_, part);
+    const bool is_same = files_.mask_before == saving.mask_before_;  // no other mask was taken meanwhile
+    if (is_same) files_.mask_before = saving.is_written_ ? fs::path() : saving.files_.mask_before;
     if (!saving.is_written_) return saving.saved_;
     known_.settings = saving.known_.settings;
     known_kept_ = saving.known_kept_;

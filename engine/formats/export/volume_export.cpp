@@ -64,13 +64,11 @@ std::string value_of(const NrrdHead& head, std::string_view field)
     return found != head.fields.end() ? found->value : std::string();
 }
 
-/// The header of a volume that replaces the file at `path`.
-std::string nrrd_header(const std::filesystem::path& path, const VolumeInfo& info, const std::vector<NrrdPair>& pairs)
+std::string nrrd_header(const VolumeInfo& info, NrrdHead kept)
 {
     const char* const type = info.type == VoxelType::float32   ? "float"
                              : info.type == VoxelType::float64 ? "double"
                                                                : name_of(info.type);
-    NrrdHead kept = read_nrrd_head(path).value_or(NrrdHead{});
     std::string header = sentence("NRRD000", std::max(kept.version, 4), "\n");
     for (const std::string& comment : kept.comments) header += comment + "\n";
     header += sentence("type: ", type, "\ndimension: 3\n", nrrd_axes(info),
@@ -83,7 +81,6 @@ std::string nrrd_header(const std::filesystem::path& path, const VolumeInfo& inf
         set_pair(kept.pairs, NRRD_CONTENT_KEY, info.format);
     else
         std::erase_if(kept.pairs, [](const NrrdPair& pair) { return pair.key == NRRD_CONTENT_KEY; });
-    for (const NrrdPair& pair : pairs) set_pair(kept.pairs, pair.key, pair.value);
     for (const NrrdPair& pair : kept.pairs) header += spelled(pair) + "\n";
     return header + "\n";
 }
@@ -96,11 +93,11 @@ int64_t export_rows(const VolumeInfo& info)
     return std::clamp<int64_t>(STRIP_BYTES / row_bytes, 1, info.size.y);
 }
 
-void export_nrrd(const std::filesystem::path& path, const VolumeSource& source, const std::vector<NrrdPair>& pairs)
+void export_nrrd(const std::filesystem::path& path, const VolumeSource& source, const NrrdHead& kept)
 {
     static_assert(std::endian::native == std::endian::little);
     const VolumeInfo& info = source.info();
-    const std::string header = nrrd_header(path, info, pairs);
+    const std::string header = nrrd_header(info, kept);
     AtomicWriter writer(path);
     writer.append(std::as_bytes(std::span(header)));
     const int64_t step = export_rows(info);
@@ -122,7 +119,7 @@ bool is_volume_export(const std::filesystem::path& path)
 }
 
 void export_volume(const std::filesystem::path& path, const VolumeSource& source, const Progress& progress,
-                   const std::vector<NrrdPair>& pairs)
+                   const std::optional<NrrdHead>& kept)
 {
     static_cast<void>(voxel_count(source.info()));
     if (!is_volume_export(path))
@@ -131,7 +128,7 @@ void export_volume(const std::filesystem::path& path, const VolumeSource& source
     const std::optional<int64_t> bytes = multiplied(voxel_count(source.info()), int64_t(bytes_of(source.info().type)));
     if (form_of(path) == ".nrrd") {
         expect_space(path, bytes, LESS_SPACE);
-        return export_nrrd(path, told, pairs);
+        return export_nrrd(path, told, kept ? *kept : read_nrrd_head(path).value_or(NrrdHead{}));
     }
     expect_space(path, bytes.value_or(INT64_MAX) / MAX_DEFLATION, LESS_SPACE);
     export_tiff(path, told);

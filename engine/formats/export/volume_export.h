@@ -21,13 +21,13 @@ inline constexpr const char* NRRD_CONTENT_KEY = "shvr_content";
 bool is_volume_export(const std::filesystem::path& path);
 
 /// Replaces an existing file atomically. Fails for any other extension. An NRRD file keeps the comments, key/value
-/// pairs and fields of the NRRD file that it replaces, except those that describe voxels and axes. `pairs` are set in
-/// the new NRRD header; they are ignored for TIFF.
+/// pairs and fields of `kept`, except those that describe voxels and axes; without it, those of the NRRD file that it
+/// replaces.
 void export_volume(const std::filesystem::path& path, const VolumeSource& source, const Progress& progress = {},
-                   const std::vector<NrrdPair>& pairs = {});
+                   const std::optional<NrrdHead>& kept = {});
 
 /// Writers of one format each; for volume_export.cpp.
-void export_nrrd(const std::filesystem::path& path, const VolumeSource& source, const std::vector<NrrdPair>& pairs);
+void export_nrrd(const std::filesystem::path& path, const VolumeSource& source, const NrrdHead& kept);
 void export_tiff(const std::filesystem::path& path, const VolumeSource& source);
 
 /// The number of rows of a slice that an export reads at a time: as many as 256 KiB hold, at least one.

@@ -46,6 +46,17 @@ bool is_ome_zarr_label(const std::filesystem::path& folder)
     }
 }
 
+std::vector<std::string> read_label_header(const std::filesystem::path& folder)
+{
+    const std::optional<ZarrNode> node = read_zarr_node(folder);
+    if (!node) return {};
+    const JsonNode list = node->attributes()["shvr"]["nrrd_header"];
+    std::vector<std::string> lines;
+    if (list.exists())
+        for (const JsonNode& line : list.elements()) lines.push_back(line.any_text());
+    return lines;
+}
+
 LabelLooks read_label_looks(const std::filesystem::path& folder)
 {
     LabelLooks result;

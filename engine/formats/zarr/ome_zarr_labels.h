@@ -26,5 +26,7 @@ struct LabelLooks {
 bool is_ome_zarr_label(const std::filesystem::path& folder);
 /// Empty if the folder (or the path into an archive) holds no label image. Fails if its attributes are not JSON.
 LabelLooks read_label_looks(const std::filesystem::path& folder);
+/// The lines of an NRRD header that SHVR keeps with a label image, in its attribute "shvr"; empty if there are none.
+std::vector<std::string> read_label_header(const std::filesystem::path& folder);
 
 }  // namespace shvr

@@ -279,6 +279,7 @@ void FileTaker::take_annotation(Part part, const std::filesystem::path& path)
             const Command* const command =
                 annotator.perform(sentence(name_of(part), " of ", short_name(path)), std::move(changes));
             if (!command) return say(path.string() + ": its " + name_of(part) + " is already in use");
+            if (part == Part::mask) annotator.work().keep_header_of(path);
             others_.show_changes(*command);
             for (const std::string& loss : notes.losses) say(loss, Weight::warning);
             for (const std::string& remark : notes.remarks) say(remark);

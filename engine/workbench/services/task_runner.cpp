@@ -99,7 +99,8 @@ void TaskRunner::act(const ExportTask& task)
                               .volume_hash = document.session.volume_hash,
                               .project = document.session.volume_path,
                               .volume_path = document.session.volume_path,
-                              .trace_path = document.session.trace_path};
+                              .trace_path = document.session.trace_path,
+                              .mask_path = document.annotator.work().mask_of_header()};
     auto snapshot = std::make_shared<AnnotationSnapshot>(view);
     std::vector<std::string> names;
     for (const std::filesystem::path& path : {task.mask, task.offset, task.trace, task.mesh, task.metrics})

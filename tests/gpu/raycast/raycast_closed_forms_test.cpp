@@ -67,6 +67,7 @@ TEST_CASE_FIXTURE(OnDevice, "a Gaussian blob has its closed depth, with order 2 
     check_below("order of convergence, below 2", std::max(2.0 - order_of(errors), 0.0), 0.2);
 }
 
+// Kind (Light): steps below 0.001 voxels, of which a ray sums hundreds of thousands
 TEST_CASE_FIXTURE(OnDevice, "the shortest steps sum to what long ones do")
 {
     constexpr double OPACITY = 0.5;  // of a voxel's length: plain sums would be 4e-4 off

@@ -722,6 +722,7 @@ TEST_CASE("paths that open nothing are refused with what was expected")
     refused(folder.write("wrong.json", with(R"("render": {"size": 3})")), "wrong.json: key render.size is 3");
 }
 
+// Kind (Sessions): a session with adaptive pictures, which lost thin features and were removed
 TEST_CASE("a session with an option that was removed opens as without it, and says so")
 {
     const TemporaryFolder folder;

@@ -77,3 +77,16 @@ TEST_CASE_FIXTURE(TakerAlone, "taker: annotation needs a scan; a scan that is me
     CHECK(contains(error_of([&] { taker.act(TakeFile{.path = "b.mask", .use = FileUse::mask}); }),
                    "belongs to a volume"));
 }
+
+TEST_CASE_FIXTURE(TakerAlone, "taker: what the header of a mask states is kept by the next save and by exports")
+{
+    std::string voxels(40 * 36 * 32, '\0');
+    voxels[7] = 2;
+    const auto file = folder.write("s.seg.nrrd",
+                                   "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 40 36 32\nspacings: 1 1 1\nencoding: "
+                                   "raw\nSegment0_LabelValue:=2\nSegment0_Tags:=Anatomy^SCT^1\n\n" +
+                                       voxels);
+    CHECK(take(TakeFile{.path = file, .use = FileUse::mask}).empty());
+    CHECK(document().annotator.document().mask.voxels_by_group()[2] == 1);
+    CHECK(document().annotator.work().mask_of_header() == file);
+}

@@ -222,7 +222,7 @@ TEST_CASE("layers of segments become one mask, and what it cannot hold is told")
         "(1,0,0) (0,1,0) (0,0,2)\nkinds: list domain domain domain\nencoding: raw\nspace origin: (5,6,7)\n"
         "Segment0_LabelValue:=1\nSegment0_Layer:=0\nSegment0_Name:=xylem\nSegment1_LabelValue:=2\nSegment1_Layer:=0\n"
         "Segment1_Name:=phloem\nSegment2_Color:=1 0 0\nSegment2_LabelValue:=1\nSegment2_Layer:=1\n"
-        "Segment2_Name:=bundle\n\n" +
+        "Segment2_Name:=bundle\nSegment2_Tags:=Anatomy^SCT^1|\n\n" +
             voxels);
     const ImportedMask read = import_mask(file, space_of(scan()));
     Mask mask(SCAN_SIZE);
@@ -250,8 +250,8 @@ TEST_CASE("layers of segments become one mask, and what it cannot hold is told")
     work.save(label_looks(groups, work.document().mask));
     CHECK(fs::exists(folder.path / "s.seg.nrrd.old"));
     const std::string saved = bytes_of_file(file);
-    for (const char* line :
-         {"dimension: 3\n", "Segment2_LabelValue:=3\n", "Segment2_Layer:=0\n", "Segment2_Name:=bundle\n"})
+    for (const char* line : {"dimension: 3\n", "Segment2_LabelValue:=3\n", "Segment2_Layer:=0\n",
+                             "Segment2_Name:=bundle\n", "Segment2_Tags:=Anatomy^SCT^1|\n"})
         CHECK_MESSAGE(contains(saved, line), line);
     const ImportedMask again = import_mask(file, space_of(scan()));
     CHECK(again.losses.empty());
