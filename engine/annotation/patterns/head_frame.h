@@ -13,7 +13,8 @@ struct HeadFrame {
     /// Right-handed axes of unit length; `up` points from the stem to the florets.
     glm::dvec3 x{1.0, 0.0, 0.0}, y{0.0, 1.0, 0.0}, up{0.0, 0.0, 1.0};
     bool knows_up = true;  ///< false: nothing tells above from below, so up.z >= 0
-    /// Root mean square angle between abaxial veins and planes through the axis, by length; null if they were not used.
+    /// Root mean square angle between chords of abaxial veins and planes through the axis, by length; null if they were
+    /// not used.
     std::optional<double> residual_degrees{};
 
     /// Distances along x, y and up from the centre.
@@ -28,11 +29,9 @@ struct FoundFrame {
     std::optional<HeadFrame> frame{};
     std::string reason{};  ///< why there is none
 };
-/// Fits the axis. Abaxial veins run in planes through it, so each of their pieces, as a line, meets it: it is the line
-/// with the least sum of log(1 + (e / 0.05)^2), by length, with e = (p - c) . (t x w), p a piece's middle, t its
-/// direction, c and w the axis, and lengths in root mean square radii of the sections. Without abaxial veins around the
-/// axis, it is the principal axis of inertia of the florets (12 or more) or else of all sections whose moment differs
-/// from the other two. Time is linear in the number of nodes.
+/// Fits the axis. Abaxial veins run in planes through it (head_axis.h). Without abaxial veins around the axis, it is the
+/// principal axis of inertia of the florets (12 or more) or else of all sections whose moment differs from the other
+/// two. Time is linear in the number of nodes.
 FoundFrame fit_frame(const VeinGraph& graph);
 
 }  // namespace shvr

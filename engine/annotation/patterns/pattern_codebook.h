@@ -19,8 +19,9 @@ inline constexpr PatternMeasure PATTERN_MEASURES[] = {
     {"axis_direction_y", "1", "see axis_direction_x", ""},
     {"axis_direction_z", "1", "see axis_direction_x", ""},
     {"axis_residual", "degree",
-     "root mean square angle between abaxial veins and planes through the axis, by length; large where the axis is "
-     "uncertain",
+     "root mean square angle between chords of abaxial veins and planes through the axis, by length; chords are 0.3 "
+     "times "
+     "the sections' root mean square radius long, or a whole vein; large where the axis is uncertain",
      "veins in planes through an axis: 0"},
     {"vein_length_A", "LENGTH", "length of the veins of section A (abaxial, adaxial or floret), without connections",
      "sum"},
