@@ -30,11 +30,12 @@ std::vector<VeinCourse> abaxial_courses(const VeinGraph& graph, const std::vecto
 /// Returns a unit vector across `direction`, and the third axis.
 std::pair<glm::dvec3, glm::dvec3> across(const glm::dvec3& direction);
 
-/// Each abaxial vein runs in a plane through the axis. The axis is the line with the least sum of log(1 + (d / 0.05)^2)
-/// by length, d the distance of a vein's point from the vein's plane. Where the veins hardly decide the direction, as in
-/// a flat head, whose veins lie in planes through any line in it, errors of a trace would: so the direction is drawn, by
-/// the square of these errors, to the sections' axis of symmetry, and axes around which veins and sections lie to two
-/// sides only are the worse for it. `moments` are those of the sections. Null without veins around an axis.
+/// Each abaxial vein runs in a plane through the axis. The axis is the line with the least sum of log(1 + (d /
+/// 0.05)^2) by length, d the distance of a vein's point from the vein's plane. Where the veins hardly decide the
+/// direction, as in a flat head, whose veins lie in planes through any line in it, errors of a trace would: so the
+/// direction is drawn, by the square of these errors, to the sections' axis of symmetry, and axes around which veins
+/// and sections lie to two sides only are the worse for it. `moments` are those of the sections. Null without veins
+/// around an axis.
 std::optional<HeadAxis> axis_of_veins(const std::vector<VeinCourse>& courses, const Moments& moments);
 
 }  // namespace shvr

@@ -30,8 +30,8 @@ struct FoundFrame {
     std::string reason{};  ///< why there is none
 };
 /// Fits the axis. Abaxial veins run in planes through it (head_axis.h). Without abaxial veins around the axis, it is
-/// the principal axis of inertia of the florets (12 or more) or else of all sections whose moment differs from the other
-/// two. Time is linear in the number of nodes.
+/// the principal axis of inertia of the florets (12 or more) or else of all sections whose moment differs from the
+/// other two. Time is linear in the number of nodes.
 FoundFrame fit_frame(const VeinGraph& graph);
 
 }  // namespace shvr
