@@ -88,12 +88,17 @@ void Touch::stop_mouse()
     wish_ = probe_;  // it stays where assistance left it
 }
 
+double Touch::finest_spacing() const
+{
+    const glm::dvec3& spacing = renderer_.volume().info().spacing;
+    return std::min({spacing.x, spacing.y, spacing.z});
+}
+
 Workspace Touch::workspace(const TouchSettings& settings) const
 {
     if (!is_mouse()) return workspace_in_view(settings.camera, settings.view_height, settings.scale);
     const VolumeInfo& info = renderer_.volume().info();
-    const double finest = std::min({info.spacing.x, info.spacing.y, info.spacing.z});
-    return {.to_volume = glm::dmat3(finest / VOXEL_M), .origin = 0.5 * glm::dvec3(info.size) * info.spacing};
+    return {.to_volume = glm::dmat3(finest_spacing() / VOXEL_M), .origin = 0.5 * glm::dvec3(info.size) * info.spacing};
 }
 
 /// Moves the probe, and moves the plane that constrains the probe through its new position.
@@ -226,12 +231,20 @@ double Touch::relevance_age_ms() const
     return servo_ && state_.relevance_time_ns > 0 ? double(now_ns() - state_.relevance_time_ns) * 1e-6 : 0.0;
 }
 
+/// Moves the probe to the servo's, unless the difference is rounding: a guided probe at rest may oscillate in the last
+/// bits of its place for ever, and pictures and previews, which follow each motion, would never be finished.
+void Touch::follow_servo(const glm::dvec3& point)
+{
+    constexpr double REST_VOXELS = 1e-6;
+    if (glm::distance(point, probe_) > REST_VOXELS * finest_spacing()) probe_ = point;
+}
+
 void Touch::receive()
 {
     if (servo_->servo.state().take()) {
         state_ = servo_->servo.state().value();
         awaits_relevance_ = awaits_relevance_ && state_.relevance_time_ns == 0;
-        if (state_.ticks > 0) probe_ = state_.step.probe;
+        if (state_.ticks > 0) follow_servo(state_.step.probe);
     }
     if (servo_->link->state().take()) tap_ = servo_->link->state().value();
     if (recorder_) recorder_->advance(*servo_->link);

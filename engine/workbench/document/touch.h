@@ -88,6 +88,8 @@ private:
     void ask();
     void stop();
     void receive();
+    void follow_servo(const glm::dvec3& point);
+    double finest_spacing() const;
     Workspace workspace(const TouchSettings& settings) const;
 
     Renderer& renderer_;

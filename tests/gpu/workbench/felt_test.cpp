@@ -120,6 +120,27 @@ TEST_CASE_FIXTURE(OnDevice, "what is seen is what is felt: no cut, clip plane, h
     REQUIRE(is_not_felt());
 }
 
+// Kind (Touch): a guided probe that rests against a surface
+TEST_CASE_FIXTURE(OnDevice, "a guided probe comes to rest, although the servo may oscillate in the last bits")
+{
+    constexpr uint64_t RESTS_FOR = 100;  // ticks
+    TemporaryFolder folder;
+    Workbench bench(renderer(), {});
+    bench.open(write_tubes_session(folder.path), {});
+    bench.perform(Set{R"({"probe":{"guided":true}})"});
+    const Touch& touch = bench.document().touch;
+    for (int place = 0; place < 12; ++place) {
+        bench.perform(PlaceProbe{{8.3 + 1.7 * place, 18.1 + 0.3 * place, 16.2}});
+        glm::dvec3 seen = touch.probe();
+        uint64_t since = touch.last_state().ticks;
+        CHECK(advance_until(bench, [&] {
+            const uint64_t ticks = touch.last_state().ticks;
+            if (touch.probe() != seen || ticks < since) seen = touch.probe(), since = ticks;
+            return ticks - since > RESTS_FOR && touch.last_state().relevance_time_ns > 0;
+        }));
+    }
+}
+
 TEST_CASE_FIXTURE(OnDevice, "a recorded stylus feels what is seen, and an older recording what was felt then")
 {
     TemporaryFolder folder;
