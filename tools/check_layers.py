@@ -117,7 +117,7 @@ MAY_INCLUDE = {
     "tools": "engine/base engine/pages engine/volume engine/graph engine/gpu engine/projects engine/annotation/script engine/annotation/trace "
     "engine/annotation/work engine/annotation/writers engine/session engine/jobs engine/tasks engine/picture engine/live "
     "haptics haptics/devices haptics/hid ui engine/study engine/study/report engine/workbench "
-    "engine/workbench/touch engine/workbench/bindings "
+    "engine/workbench/touch "
     "tools/golden tools/bench tools/report",
 }
 # Rooms without a device: none of them may include a room that depends on one, directly or indirectly.

@@ -9,6 +9,7 @@
 #include <imgui/imgui.h>
 
 #include "engine/workbench/bindings/preferences_file.h"
+#include "ui/browser.h"
 #include "ui/panels/field_keys.h"
 
 namespace shvr::ui {
@@ -30,7 +31,7 @@ gpu::Budget budget_of(const AppOptions& options)
     gpu::Budget budget = options.budget;
     const auto bytes = [](double mebibytes) { return uint64_t(mebibytes) << 20; };
     try {
-        const Preferences preferences = load_preferences(options.preferences);
+        const Preferences preferences = load_preferences(preferences_file(options.settings_folder));
         if (budget.device_bytes == 0) budget.device_bytes = bytes(preferences.budget_device_mib.value_or(0.0));
         if (budget.host_bytes == 0) budget.host_bytes = bytes(preferences.budget_host_mib.value_or(0.0));
     } catch (const Error&) {
@@ -53,7 +54,7 @@ App::App(const AppOptions& options) : options_(options), window_("SHVR", options
     attach();
     WorkbenchOptions wanted{.saves_outside = options.saves_outside,
                             .allow_force = options.allow_force,
-                            .preferences = options.preferences,
+                            .settings = options.settings_folder,
                             .now_s = [this] { return window_.now_s(); },
                             .version = options.version,
                             .draw_texts = draw_texts};
@@ -117,6 +118,10 @@ void App::turn()
 void App::follow_workbench()
 {
     if (const std::string text = bench_->take_clipboard(); !text.empty()) ImGui::SetClipboardText(text.c_str());
+    if (const std::filesystem::path page = bench_->take_page(); !page.empty() && !show_in_browser(page))
+        bench_->say(sentence("xdg-open, of the package xdg-utils, cannot be started; open this page in a browser: ",
+                             page.string()),
+                    Weight::warning);
     if (std::exchange(drawn_openings_, bench_->openings()) != bench_->openings()) {
         report_.opened(bench_->opened_s());
         window_.set_title("SHVR");  // until the volume is visible

@@ -30,7 +30,7 @@ struct AppOptions {
     const std::atomic<bool>* stop = nullptr;  ///< once true, the window is asked to close, as if by its button
     bool saves_outside = false;               ///< sessions may write outside their folders without a question
     bool allow_force = false;                 ///< lets a haptic device with a verified profile push the hand
-    std::filesystem::path preferences{};      ///< the file (preferences_file.h); empty: none are read or kept
+    std::filesystem::path settings_folder{};  ///< of preferences and kept transfer functions; empty: none
     std::filesystem::path log{};              ///< receives each action as a line that replays it; empty: none
     std::filesystem::path screen_texts{};     ///< receives each frame's texts (screen_text.h); empty: none
     std::string version{};                    ///< version of the program, for reports

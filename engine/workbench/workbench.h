@@ -118,6 +118,8 @@ public:
     bool take_quit() { return services_.saver.take_quit(); }
     /// Returns the requested keyboard focus and clears it; empty: none.
     std::string take_focus() { return services_.window.take_focus(); }
+    /// Returns the page that the browser is to show, and clears the request; empty: none.
+    std::filesystem::path take_page() { return services_.window.take_page(); }
     /// Returns whether the box of the cutting planes is shown: while they are moved, and a little longer.
     bool shows_cut_box() const { return services_.viewer.shows_cut_box(); }
     bool shows_full_screen() const { return services_.window.is_full_screen(); }

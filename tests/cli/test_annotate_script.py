@@ -134,6 +134,24 @@ class Script(CliTest):
         self.assertEqual(exported["voxels_by_group"], {"1": 280})  # voxels whose centres, at halves, lie within 4 of a corner
         self.check("annotate", session, "--actions", script, "--quiet")  # as the budget is usually
 
+    def test_a_transfer_function_is_kept_for_all_scans_and_preferences_stay(self):
+        session = self.write_session("small.json", volume={"procedural": "tubes", "size": [16] * 3})
+        settings = self.folder / "configuration" / "shvr"
+        settings.mkdir(parents=True)
+        (settings / "preferences.json").write_text("no JSON")   # of no concern to a replay
+        script = self.write_script("keep.jsonl", [
+            {"op": "keep_preset", "name": "vessels"}, {"op": "rename_preset", "name": "vessels", "to": "bundles of mine"},
+            {"op": "prefer", "values": {"theme": "light"}}, {"op": "open", "path": str(session)}])
+        replay = ["annotate", session, "--actions", script, "--quiet"]
+        result = run(*replay, environment={"XDG_CONFIG_HOME": settings.parent})
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        kept, = (settings / "transfer_functions").iterdir()
+        self.assertEqual(json.loads(kept.read_text())["points"][-1]["color"], "#ffe0c0")
+        self.assertEqual((settings / "preferences.json").read_text(), "no JSON")
+        result = run(*replay, environment={"XDG_CONFIG_HOME": "", "HOME": ""})
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("keep.jsonl:1: no settings folder is known; expected HOME or XDG_CONFIG_HOME", result.stderr)
+
     def test_a_save_that_fails_ends_the_replay_at_its_line(self):
         session = self.write_session("small.json", volume={"procedural": "tubes", "size": [16] * 3})
         self.write_json("taken", {})

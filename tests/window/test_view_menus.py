@@ -249,7 +249,7 @@ class Opening(Seen):
 
 # And how many entries each has at least, in those within it, too.
 MENUS = (("File", 12), ("Edit", 3), ("View", 48), ("Paint", 12), ("Trace", 20), ("Probe", 18), ("Tools", 6),
-         ("Help", 3))
+         ("Help", 4))
 
 
 class Menus(MenuWalk):

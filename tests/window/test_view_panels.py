@@ -1,7 +1,12 @@
 """Panels on what the workbench knows, by real keys: the palette, and keys that are changed."""
 import json
+import os
+import shutil
 import unittest
+from pathlib import Path
+from unittest import mock
 
+from harness import SHVR
 from seen import Seen
 
 DAB = {"op": "paint", "brush": "fill", "region": "ball", "path": [[32, 32, 32]], "radius": 5, "threshold": 0, "group": 3}
@@ -99,6 +104,49 @@ class Panels(Seen):
         self.check_follows(lambda: self.press("Return"), "prefer")
         self.assertEqual(self.done()[-1]["values"]["layout"]["panels"], {"occlusion": {"folded": False, "place": "side"}})
         self.finish()
+
+    def install(self):
+        """A tree like an installed one, with a first page of the manual; returns the program in it and the page."""
+        program = self.folder / "tree" / "bin" / "shvr"
+        page = self.folder / "tree" / "share" / "doc" / "shvr" / "manual" / "index.html"
+        for file in (program, page):
+            file.parent.mkdir(parents=True)
+        try:
+            os.link(SHVR, program)
+        except OSError:   # another disk
+            shutil.copy(SHVR, program)
+        page.write_text("<title>SHVR</title>")
+        return program, page
+
+    def open_manual(self, says):
+        before = self.frame()["frame"]
+        self.click_on("Help", "##MainMenuBar")
+        self.check_follows(lambda: self.click_on("User manual", "##Menu_00"), "show_manual")
+        self.see(says)
+        self.assertGreater(self.frame()["frame"], before)
+
+    # Kind (Installation): no program to open a page with, and no page
+    def test_the_menu_opens_the_manual_in_the_browser_or_says_where_it_is(self):
+        program, page = self.install()
+        opener, opened = self.folder / "path" / "xdg-open", self.folder / "opened"
+        opener.parent.mkdir()
+        opener.write_text(f'#!/bin/sh\nprintf "%s" "$*" > "{opened}.new" && /bin/mv "{opened}.new" "{opened}"\n')
+        opener.chmod(0o755)
+        setsid = opener.with_name("setsid")
+        setsid.symlink_to(shutil.which("setsid"))
+        with mock.patch("window.SHVR", str(program)):
+            self.open_scan(self.write_ball(), preferences={"hints_seen": 3},
+                           environment={"PATH": opener.parent, "SHVR_ASSETS": Path("assets").resolve()})
+        self.open_manual("The user manual: ")
+        self.wait_for_file(opened)
+        self.assertEqual(opened.read_text(), str(page))
+        opener.unlink()
+        self.open_manual("xdg-open, of the package xdg-utils, cannot be started")
+        page.unlink()
+        self.open_manual("The user manual is not installed")
+        said = "\n".join(self.finish()["messages"])
+        self.assertIn(f"open this page in a browser: {page}", said)
+        self.assertIn(f"expected it at {page}", said)
 
 
 if __name__ == "__main__":

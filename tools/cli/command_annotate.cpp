@@ -5,6 +5,7 @@
 
 #include "engine/annotation/script/script.h"
 #include "engine/annotation/writers/hold.h"
+#include "engine/base/assets.h"
 #include "engine/base/text.h"
 #include "engine/workbench/workbench.h"
 #include "tools/cli/cli.h"
@@ -315,8 +316,11 @@ void run_actions(const AnnotateCommandOptions& options)
     Renderer renderer({.device = {options.common.device, validation && *validation == '1'},
                        .budget = {options.common.budget_device_mib << 20, options.common.budget_host_mib << 20},
                        .threads = options.common.threads});
-    ui::Workbench bench(renderer,
-                        {.has_servo = false, .saves_outside = options.common.outside, .slices_follow = false});
+    ui::Workbench bench(renderer, {.has_servo = false,
+                                   .saves_outside = options.common.outside,
+                                   .settings = config_folder(),
+                                   .has_preferences = false,  // a log has the same effect for each person
+                                   .slices_follow = false});
     static_cast<void>(work.begin("opening " + options.project));
     bench.open(options.project, options.common.settings);
     if (bench.document().only_looks())

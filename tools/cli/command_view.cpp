@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "engine/workbench/bindings/preferences_file.h"
+#include "engine/base/assets.h"
 #include "tools/cli/cli.h"
 #include "tools/cli/stop.h"
 #include "tools/cli/stop_deadline.h"
@@ -87,7 +87,7 @@ void run_view(const ViewCommandOptions& options)
                           .validation = validation && *validation == '1',
                           .saves_outside = common.outside,
                           .allow_force = options.allow_force,
-                          .preferences = ui::preferences_file(),
+                          .settings_folder = config_folder(),
                           .log = options.log,
                           .screen_texts = screen_texts ? screen_texts : "",
                           .version = SHVR_VERSION};

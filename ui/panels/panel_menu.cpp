@@ -326,6 +326,7 @@ void tools_menu(const Model& model, Actions& actions)
 void help_menu(const Model& model, Actions& actions)
 {
     if (!begin_menu("Help")) return;
+    shortcut_item("manual", model, actions);
     shortcut_item("help", model, actions, model.shows_help);
     shortcut_item("focus_menu", model, actions);
     shortcut_item("messages", model, actions, model.shows_messages);

@@ -39,6 +39,8 @@ struct ShowHelp {
     bool on = true;
 };
 
+struct ShowManual {};  ///< opens the user manual in the browser
+
 /// Shows all messages with their severity; messages count as read while they are shown.
 struct ShowMessages {
     bool on = true;
@@ -114,6 +116,9 @@ inline constexpr auto WINDOW_ACTIONS = std::tuple{
     row<ShowHelp, WindowState>(
         {"show_help", "Keys and mouse", WINDOW_GROUP, "shows or hides the list of keys", Needs::nothing},
         [](auto& f, ShowHelp& a) { f.flag("on", a.on, {}); }),
+    row<ShowManual, WindowState>(
+        {"show_manual", "User manual", WINDOW_GROUP, "opens the user manual in the browser", Needs::nothing},
+        NO_FIELDS),
     row<ShowMessages, WindowState>({"show_messages", "Messages", WINDOW_GROUP,
                                     "shows or hides all messages, and marks them as read", Needs::nothing},
                                    [](auto& f, ShowMessages& a) { f.flag("on", a.on, {}); }),

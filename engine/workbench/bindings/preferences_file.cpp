@@ -160,10 +160,9 @@ std::string patch_of_window(const std::string& id, const glm::dvec2& at, const g
                     size.y, "]}}}}");
 }
 
-std::filesystem::path preferences_file()
+std::filesystem::path preferences_file(const std::filesystem::path& settings)
 {
-    const std::filesystem::path folder = config_folder();
-    return folder.empty() ? folder : folder / "preferences.json";
+    return settings.empty() ? settings : settings / "preferences.json";
 }
 
 Preferences load_preferences(const std::filesystem::path& file, std::vector<std::string>* complaints)

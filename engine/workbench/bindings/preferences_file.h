@@ -1,6 +1,6 @@
 #pragma once
-// Reads and writes preferences: one JSON file, $XDG_CONFIG_HOME/shvr/preferences.json, replaced atomically. Any
-// thread.
+// Reads and writes preferences: one JSON file, preferences.json in the folder of settings (config_folder() in
+// engine/base/assets.h), replaced atomically. Any thread.
 
 #include <filesystem>
 #include <string>
@@ -11,8 +11,8 @@
 
 namespace shvr::ui {
 
-/// Returns the path of the file; empty if the environment specifies no home directory.
-std::filesystem::path preferences_file();
+/// Returns the path of the file in the folder of settings; empty if there is no such folder.
+std::filesystem::path preferences_file(const std::filesystem::path& settings);
 /// Returns defaults if the file does not exist. Fails at unknown keys and values, naming file, key, value and the
 /// expected value. An unknown shortcut or chord is not an error: its key change goes to `unusable_keys`, and a sentence
 /// that describes it to `complaints`.

@@ -345,6 +345,7 @@ constexpr Shortcut SHORTCUTS[] = {
      Mode::tap,
      [](const Model& model, double) -> Action { return ShowHelp{!model.shows_help}; },
      {"F1", "F12"}},
+    both("manual", WORK_KEYS, "User manual", Mode::tap, plain<ShowManual>, ""),
     both(
         "messages", WORK_KEYS, "Messages", Mode::tap,
         [](const Model& model, double) -> Action { return ShowMessages{!model.shows_messages}; }, ""),

@@ -25,12 +25,14 @@ struct WorkbenchOptions {
     /// Set for scripts, which do exactly what they state: settings become no steps and are not kept, saves write only
     /// annotation, to the files that the session names, and the selection stays.
     bool is_script = false;
-    bool saves_outside = false;           ///< sessions may write outside their folders without asking
-    bool allow_force = false;             ///< allows a haptic device with a verified profile to exert forces
-    std::filesystem::path preferences{};  ///< path of the file (preferences_file.h); empty: neither read nor saved
-    std::function<double()> now_s{};      ///< seconds of any clock; null: the system's
-    std::string version{};                ///< the program's, for reports; empty: unknown
-    DeviceSource devices{};               ///< source of haptic devices; if its functions are empty: this machine
+    bool saves_outside = false;  ///< sessions may write outside their folders without asking
+    bool allow_force = false;    ///< allows a haptic device with a verified profile to exert forces
+    /// Folder of the preferences, of kept transfer functions and of the example's copy; empty: there is none.
+    std::filesystem::path settings{};
+    bool has_preferences = true;      ///< false: the defaults, and no change of them is saved
+    std::function<double()> now_s{};  ///< seconds of any clock; null: the system's
+    std::string version{};            ///< the program's, for reports; empty: unknown
+    DeviceSource devices{};           ///< source of haptic devices; if its functions are empty: this machine
     /// Slices follow a probe that leaves their plane, and this move is logged; false: only logged actions move slices.
     bool slices_follow = true;
     TextDrawer draw_texts{};  ///< draws labels into picture files; null: no labels

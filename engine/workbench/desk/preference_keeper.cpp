@@ -60,10 +60,10 @@ void PreferenceKeeper::act(const ForgetRecent& action)
 /// Reads the file. An unreadable file stays as it is, and nothing is saved until it can be read.
 void PreferenceKeeper::load()
 {
-    if (options_.preferences.empty()) return;
+    if (options_.settings.empty() || !options_.has_preferences) return;
     try {
         std::vector<std::string> complaints;
-        preferences_ = ui::load_preferences(options_.preferences, &complaints);
+        preferences_ = ui::load_preferences(preferences_file(options_.settings), &complaints);
         keymap_ = Keymap(preferences_.key_set, preferences_.keys);
         are_kept_ = true;
         for (const std::string& complaint : complaints) say(complaint, Weight::warning);
@@ -80,10 +80,11 @@ void PreferenceKeeper::prefer(Preferences preferences)
     keymap_ = Keymap(preferences.key_set, preferences.keys);
     preferences_ = std::move(preferences);
     if (!are_kept_) return;
-    savers_.start("keeping preferences", [file = options_.preferences, kept = preferences_](ProgressReporter&) {
-        save_preferences(file, kept);
-        return Jobs::Completion();
-    });
+    savers_.start("keeping preferences",
+                  [file = preferences_file(options_.settings), kept = preferences_](ProgressReporter&) {
+                      save_preferences(file, kept);
+                      return Jobs::Completion();
+                  });
 }
 
 void PreferenceKeeper::note_opened(const std::filesystem::path& path)

@@ -8,9 +8,9 @@ namespace shvr::ui {
 
 std::filesystem::path PresetShelf::folder() const
 {
-    if (options_.preferences.empty())
+    if (options_.settings.empty())
         fail("no settings folder is known; expected HOME or XDG_CONFIG_HOME in the environment");
-    return options_.preferences.parent_path() / "transfer_functions";
+    return options_.settings / "transfer_functions";
 }
 
 /// Loads the presets that ship with the program, then the user's own.
@@ -22,7 +22,7 @@ void PresetShelf::load()
     } catch (const Error& error) {
         say(error.what(), Weight::warning);
     }
-    if (options_.preferences.empty()) return;
+    if (options_.settings.empty()) return;
     std::vector<std::string> warnings;
     for (TransferPreset& preset : own_transfer_presets(folder(), warnings)) presets_.push_back(std::move(preset));
     for (std::string& warning : warnings) say(std::move(warning), Weight::warning);

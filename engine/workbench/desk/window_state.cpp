@@ -1,5 +1,7 @@
 #include "engine/workbench/desk/window_state.h"
 
+#include "engine/base/assets.h"
+
 namespace shvr::ui {
 
 void WindowState::act(const AskOpen& action)
@@ -11,6 +13,18 @@ void WindowState::act(const ShowHelp& action)
 {
     shows_help_ = action.on;
     if (!action.on) keeper_.await_no_key();
+}
+
+void WindowState::act(const ShowManual&)
+{
+    const std::filesystem::path page = manual_page();
+    std::error_code unknown;
+    if (!std::filesystem::is_regular_file(page, unknown))
+        return say(sentence("The user manual is not installed; expected it at ", page.string(),
+                            ", where the packages of SHVR put it"),
+                   Weight::warning);
+    page_ = page;
+    say("The user manual: " + page.string());
 }
 
 void WindowState::act(const ShowMessages& action)

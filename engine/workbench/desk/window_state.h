@@ -12,6 +12,7 @@ public:
     WindowState(Desk& desk, PreferenceKeeper& keeper) : Service(desk), keeper_(keeper) {}
     void act(const AskOpen& action);
     void act(const ShowHelp& action);
+    void act(const ShowManual& action);
     void act(const ShowMessages& action);
     void act(const ShowPasses& action);
     void act(const SavePasses& action);
@@ -24,6 +25,8 @@ public:
     bool is_full_screen() const { return is_full_screen_; }
     /// Returns the requested target of the keyboard focus and clears the request; empty: none.
     std::string take_focus() { return std::exchange(focus_, {}); }
+    /// Returns the page that the browser is to show, and clears the request; empty: none.
+    std::filesystem::path take_page() { return std::exchange(page_, {}); }
     WindowModel model() const;
 
 private:
@@ -31,6 +34,7 @@ private:
     bool shows_help_ = false, shows_passes_ = false, shows_palette_ = false, is_full_screen_ = false;
     bool asks_what_to_open_ = false, shows_preferences_ = false;
     std::string focus_;
+    std::filesystem::path page_;
     std::optional<PassRun> compared_passes_;
 };
 

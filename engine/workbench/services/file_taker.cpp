@@ -59,9 +59,9 @@ void FileTaker::act(const Open& action)
 /// Opens a copy: the shipped example must stay unchanged, since its folder may be read-only and others open it, too.
 void FileTaker::act(const OpenExample&)
 {
-    if (options_.preferences.empty())
+    if (options_.settings.empty())
         fail("no folder for the example is known; expected HOME or XDG_CONFIG_HOME in the environment");
-    const std::filesystem::path own = options_.preferences.parent_path() / "example" / "vessels.json";
+    const std::filesystem::path own = options_.settings / "example" / "vessels.json";
     jobs_.start("getting the example", [this, own](ProgressReporter&) {
         const std::filesystem::path shipped = asset_folder("examples") / "vessels.session.json";
         if (!std::filesystem::exists(own)) {

@@ -40,7 +40,7 @@ std::filesystem::path Photographer::stem() const
 {
     const std::filesystem::path stem = std::filesystem::path(document_->session_path).replace_extension();
     // The example's session is in a hidden folder, which is unsuitable for pictures.
-    const bool is_example = stem.parent_path() == options_.preferences.parent_path() / "example";
+    const bool is_example = stem.parent_path() == options_.settings / "example";
     const char* const home = std::getenv("HOME");
     return is_example && home && *home ? std::filesystem::path(home) / stem.filename() : stem;
 }

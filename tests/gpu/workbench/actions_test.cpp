@@ -186,6 +186,7 @@ const Row ROWS[] = {
     {R"({"op":"resize","pixels":[64,48]})", ""},
     {R"({"op":"await_key","shortcut":"undo"})", "awaits_key"},
     {R"({"op":"show_help","on":true})", "help"},
+    {R"({"op":"show_manual"})", ""},
     {R"({"op":"show_messages","on":true})", "messages"},
     {R"({"op":"show_passes","on":true})", "passes"},
     {R"({"op":"save_passes","path":"FOLDER/saved.json"})", "file saved.json"},
@@ -215,8 +216,7 @@ struct Bench {
 
     explicit Bench(Renderer& renderer)
     {
-        bench = std::make_unique<Workbench>(
-            renderer, WorkbenchOptions{.has_servo = false, .preferences = folder.path / "preferences.json"});
+        bench = std::make_unique<Workbench>(renderer, WorkbenchOptions{.has_servo = false, .settings = folder.path});
         bench->set_pixels({96, 80});
         std::string tiny = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 8 8 8\nencoding: raw\n\n";
         for (int voxel = 0; voxel < 512; ++voxel) tiny += char(voxel % 251);

@@ -130,9 +130,8 @@ TEST_CASE_FIXTURE(OnDevice, "a device is found when it is plugged in, is called 
     Plugs plugs;
     plugs.plug({});
     double now_s = 1.0;
-    Workbench bench(renderer(), {.preferences = folder.path / "preferences.json",
-                                 .now_s = [&] { return now_s += 0.01; },
-                                 .devices = plugs.source()});
+    Workbench bench(renderer(),
+                    {.settings = folder.path, .now_s = [&] { return now_s += 0.01; }, .devices = plugs.source()});
     bench.open(write_tubes_session(folder.path), {});
     const HandView& hand = *bench.model().hand;
     REQUIRE(turn_until(bench, [&] { return hand.has_looked; }));

@@ -64,7 +64,7 @@ TEST_CASE_FIXTURE(OnDevice, "every shortcut of the thesis's set acts")
         if (thesis.chords_of(shortcut).empty() || is_left_out) continue;
         CAPTURE(std::string(shortcut.id));
         TemporaryFolder folder;
-        Workbench bench(renderer(), {.has_servo = false, .preferences = folder.path / "preferences.json"});
+        Workbench bench(renderer(), {.has_servo = false, .settings = folder.path});
         bench.set_pixels({48, 40});
         bench.open(write_tubes_session(folder.path), {});
         for (const char* line : BEFORE) bench.perform(read_action(line, "row"));

@@ -117,6 +117,7 @@ std::vector<Action> samples()
             Resize{{640, 480}},
             AwaitKey{"undo"},
             ShowHelp{false},
+            ShowManual{},
             ShowMessages{false},
             ShowPalette{false},
             FitView{},
