@@ -42,7 +42,9 @@ class Doctor(CliTest):
 
     def test_programs_that_help_are_missed(self):
         (self.folder / "bin").mkdir()
-        self.assertIn("package graphviz", run("doctor", environment={"PATH": str(self.folder / "bin")}).stdout)
+        said = run("doctor", environment={"PATH": str(self.folder / "bin")}).stdout
+        for package in ("graphviz", "xdg-utils"):
+            self.assertIn(f"package {package}", said)
 
 
 if __name__ == "__main__":
