@@ -65,13 +65,14 @@ class UserManual(CliTest):
 
     def test_html_has_the_page_its_picture_and_its_links(self):
         page = ("# One & more\n\nSee [the index](index.md).\n\n```sh\necho '<b>' > a.png\n```\n\n![a](a.png)\n\n"
-                "| a | b |\n|---|---|\n| 1 | 2 |\n")
+                "| a | b |\n|---|---|\n| 1 | 2 |\n\nA look:\n\n```json look.json\n{}\n```\n")
         result = self.make(page, self.folder / "html")
         if "python3-markdown is missing" in result.stderr:
             self.skipTest("no interpreter here has python3-markdown")
         self.assertEqual(result.returncode, 0, result.stderr)
         html = (self.folder / "html" / "one.html").read_text()
-        for part in ["<title>One &amp; more</title>", 'href="index.html"', 'src="one-a.png"', "&lt;b&gt;", "<table>"]:
+        for part in ["<title>One &amp; more</title>", 'href="index.html"', 'src="one-a.png"', "&lt;b&gt;", "<table>",
+                     "File <code>look.json</code></p>\n\n<pre><code>{}"]:
             self.assertIn(part, html)
         self.assertTrue((self.folder / "html" / "one-a.png").is_file())
 
