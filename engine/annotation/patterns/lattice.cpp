@@ -112,8 +112,9 @@ std::vector<Estimate> estimates_of(const std::vector<FloretPair>& pairs)
         const double area = a->x * b->y - b->x * a->y;
         const double m = TURN * a->y / area, n = TURN * b->y / area;
         if (!(m > 0.5 && n > 0.5 && m < 1e4 && n < 1e4)) continue;
-        for (const double m_of : {std::floor(m), std::floor(m) + 1.0})
-            for (const double n_of : {std::floor(n), std::floor(n) + 1.0}) {
+        // Disturbed florets have other neighbours, which turns the mean vectors: numbers may be off by more than one.
+        for (double m_of = std::floor(m) - 1.0; m_of <= std::floor(m) + 2.0; ++m_of)
+            for (double n_of = std::floor(n) - 1.0; n_of <= std::floor(n) + 2.0; ++n_of) {
                 if (m_of < 1.0 || n_of < 1.0) continue;
                 const Estimate estimate = estimate_of(int(m_of), int(n_of), *a, *b);
                 // More florets than the lattice has, or less than a third of them, are another lattice's.
@@ -202,7 +203,8 @@ FoundLattice find_lattice(const std::vector<glm::dvec3>& all_places)
         refine(estimate, pairs);
         FloretLattice tried{.jugacy = estimate.jugacy, .divergence = estimate.divergence, .pairs = pairs};
         number_whorls(places.size(), tried);
-        const double score = agreement_of(tried) - 0.03 * (tried.jugacy - 1);
+        const double in_place = fit_lattice(places, tried);
+        const double score = agreement_of(tried) * in_place - 0.03 * (tried.jugacy - 1);
         if (score <= most) continue;
         most = score;
         lattice = std::move(tried);
@@ -212,7 +214,7 @@ FoundLattice find_lattice(const std::vector<glm::dvec3>& all_places)
         return {.reason = sentence("the florets are in no regular lattice: ", int(100.0 * std::max(0.0, most)),
                                    " % of neighbours agree with the best, beyond chance; expected ",
                                    int(100.0 * MIN_AGREEMENT), " % or more")};
-    fit_lattice(places, lattice);
+    add_interval(places, lattice);
     return {.lattice = std::move(lattice)};
 }
 

@@ -50,7 +50,8 @@ struct FoundLattice {
 /// `places` in the frame of the head, in its radii. The first estimate is van Iterson's relation: mean vectors A and B
 /// from florets to their neighbours on both sides, in azimuth and order, give the numbers of parastichies m = 2 pi A_o
 /// / D and n = 2 pi B_o / D with D = A_a B_o - B_a A_o, whatever share of the florets is missing, and m and n give the
-/// divergence. The estimate that most pairs agree with is refined by least squares, as is the centre. Costs n log n.
+/// divergence. Each estimate is refined by least squares, as is the centre; the one counts that most pairs agree with,
+/// and whose places most florets lie in. Costs n log n.
 FoundLattice find_lattice(const std::vector<glm::dvec3>& places);
 
 /// Steps of the two visible families of parastichies at a distance from the axis: the shortest vectors of the lattice

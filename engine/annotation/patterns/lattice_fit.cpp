@@ -46,6 +46,7 @@ private:
 struct Equation {
     glm::dvec4 terms;
     double right;
+    double whorl;
 };
 
 std::vector<Equation> equations_of(const std::vector<glm::dvec3>& places, const FloretLattice& lattice)
@@ -72,7 +73,8 @@ std::vector<Equation> equations_of(const std::vector<glm::dvec3>& places, const 
         if (!(rho > 1e-6)) continue;
         // The whorls' middle as origin keeps phase and divergence apart.
         equations.push_back({{rho, rho * (*lattice.whorls[i] - middle / count), -p.y / rho, p.x / rho},
-                             rho * std::remainder(off(i) - mean, part)});
+                             rho * std::remainder(off(i) - mean, part),
+                             double(*lattice.whorls[i])});
     }
     return equations;
 }
@@ -102,7 +104,7 @@ private:
     double count_ = 0.0;
 };
 
-void add_interval(const std::vector<Equation>& equations, FloretLattice& lattice)
+void bootstrap(const std::vector<Equation>& equations, FloretLattice& lattice)
 {
     // The whole costs at most 2e7 equations beyond 20000 florets.
     const size_t rounds = std::clamp<size_t>(20000000 / equations.size(), 100, 1000);
@@ -121,8 +123,8 @@ void add_interval(const std::vector<Equation>& equations, FloretLattice& lattice
     lattice.divergence_high = at(0.975);
 }
 
-/// Least squares of whorls over 1, rho^2 and rho^4.
-void fit_density(const std::vector<glm::dvec3>& places, FloretLattice& lattice)
+/// Least squares of whorls over 1, rho^2 and rho^4. Returns the constant.
+double fit_density(const std::vector<glm::dvec3>& places, FloretLattice& lattice)
 {
     glm::dmat3 matrix(0.0);
     glm::dvec3 right(0.0);
@@ -135,9 +137,29 @@ void fit_density(const std::vector<glm::dvec3>& places, FloretLattice& lattice)
         right += double(*lattice.whorls[i]) * terms;
     }
     const glm::dvec3 found = glm::inverse(matrix) * right;
-    if (!(std::abs(found.y) < 1e9 && std::abs(found.z) < 1e9)) return;
+    if (!(std::abs(found.y) < 1e9 && std::abs(found.z) < 1e9)) return 0.0;
     lattice.square = found.y;
     lattice.fourth = found.z;
+    return found.x;
+}
+
+/// Share of all florets that lie within 0.3 of the pairs' median length of their place, around the axis and outwards.
+double share_in_place(const std::vector<glm::dvec3>& places, double constant, const FloretLattice& lattice)
+{
+    std::vector<double> lengths;
+    for (const FloretPair& pair : lattice.pairs) lengths.push_back(pair.length);
+    if (lengths.empty()) return 0.0;
+    std::ranges::nth_element(lengths, lengths.begin() + ptrdiff_t(lengths.size() / 2));
+    const double play = 0.3 * lengths[lengths.size() / 2];
+    const std::vector<Equation> equations = equations_of(places, lattice);
+    size_t in_place = 0;
+    for (const Equation& equation : equations) {
+        const double rho = equation.terms.x, square = rho * rho;
+        const double whorls = constant + lattice.square * square + lattice.fourth * square * square;
+        const bool is_around = std::abs(equation.right) <= play;
+        in_place += is_around && std::abs(equation.whorl - whorls) <= play * std::abs(lattice.density(rho)) + 0.5;
+    }
+    return double(in_place) / double(places.size());
 }
 
 }  // namespace
@@ -167,20 +189,22 @@ void number_whorls(size_t florets, FloretLattice& lattice)
         if (const auto [root, whorls] = numbers.find(i); root == largest) lattice.whorls[i] = whorls;
 }
 
-void fit_lattice(const std::vector<glm::dvec3>& places, FloretLattice& lattice)
+double fit_lattice(const std::vector<glm::dvec3>& places, FloretLattice& lattice)
 {
-    std::vector<Equation> equations;
     for (int round = 0; round < 8; ++round) {
-        equations = equations_of(places, lattice);
         Normal normal;
-        for (const Equation& equation : equations) normal.add(equation);
+        for (const Equation& equation : equations_of(places, lattice)) normal.add(equation);
         const glm::dvec4 by = normal.solution();
         if (!(glm::length(by) < 0.2)) break;
         lattice.divergence += by.y;
         lattice.centre += glm::dvec2(by.z, by.w);
     }
-    add_interval(equations, lattice);
-    fit_density(places, lattice);
+    return share_in_place(places, fit_density(places, lattice), lattice);
+}
+
+void add_interval(const std::vector<glm::dvec3>& places, FloretLattice& lattice)
+{
+    bootstrap(equations_of(places, lattice), lattice);
 }
 
 }  // namespace shvr

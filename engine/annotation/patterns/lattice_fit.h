@@ -10,7 +10,10 @@ namespace shvr {
 void number_whorls(size_t florets, FloretLattice& lattice);
 
 /// Least squares of divergence, phase and centre over the florets with numbers, weighted by rho^2 so that errors are
-/// lengths; the interval of the divergence, by bootstrap; and the density of whorls.
-void fit_lattice(const std::vector<glm::dvec3>& places, FloretLattice& lattice);
+/// lengths, and of the density of whorls. Returns the share of all florets that then lie within 0.3 of the pairs'
+/// median length of their place, around the axis and outwards.
+double fit_lattice(const std::vector<glm::dvec3>& places, FloretLattice& lattice);
+/// The interval of the divergence, by bootstrap.
+void add_interval(const std::vector<glm::dvec3>& places, FloretLattice& lattice);
 
 }  // namespace shvr

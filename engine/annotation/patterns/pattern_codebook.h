@@ -80,7 +80,8 @@ inline constexpr PatternMeasure PATTERN_MEASURES[] = {
     {"jugacy", "1", "florets of a whorl: greatest common divisor of the numbers of parastichies", "bijugate 2"},
     {"lattice_share", "1",
      "pairs of a floret and the nearest one further out, to each side, that agree with the lattice and each other, of "
-     "all; where fewer than 0.5 agree beyond chance there is no lattice",
+     "all; there is no lattice where the share that agrees beyond chance, times the share of florets within 0.3 of a "
+     "pair's length of their place, is below 0.5",
      "undisturbed spirals near 1; florets at random: no lattice"},
     {"floret_centre_offset", "1", "distance of the lattice's fitted centre from the axis, in head radii", "phantoms 0"},
     {"parastichies_M_rho_R", "1",

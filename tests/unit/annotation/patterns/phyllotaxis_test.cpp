@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include "tests/support/slow.h"
 #include "tests/unit/annotation/patterns/flower_heads.h"
 
 using namespace shvr;
@@ -159,6 +160,29 @@ TEST_CASE("the interval holds the angle of irregular and incomplete heads, and w
         CHECK(width / found > 1.5 * last);
         last = width / found;
     }
+}
+
+// Kind (Traces): florets so irregular that wrong lattices fit a third to a half of them
+TEST_CASE("strongly disturbed florets give the angle or a reason, never another angle")
+{
+    int found = 0, all = 0;
+    for (const auto& [divergence, jugacy] : {std::pair(GOLDEN, 1), {LUCAS, 1}, {GOLDEN / 2, 2}})
+        for (uint32_t seed = 1; seed <= repeats(5u, 100u); ++seed) {
+            CAPTURE(divergence);
+            CAPTURE(seed);
+            const PatternRows rows =
+                Spiral{.divergence = divergence, .noise = 0.12, .seed = seed, .jugacy = jugacy}.rows();
+            ++all;
+            if (!rows.value("divergence_angle")) {
+                CHECK(rows.reason("divergence_angle").find("the florets are in no regular lattice") == 0);
+                continue;
+            }
+            ++found;
+            CHECK(number(rows, "divergence_angle") == Approx(divergence).epsilon(0.01));
+            CHECK(number(rows, "jugacy") == jugacy);
+        }
+    CHECK(found > 0);
+    MESSAGE(found << " of " << all);
 }
 
 TEST_CASE("florets at random are said to be in no lattice")
