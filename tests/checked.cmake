@@ -5,7 +5,7 @@ set(SHVR_IS_CHECKED OFF)
 if(SHVR_SANITIZE STREQUAL "" AND NOT CMAKE_BUILD_TYPE STREQUAL "Release")
     set(SHVR_IS_CHECKED ON)
     set(checked_sources)
-    foreach(room base volume graph look components bricks formats projects annotation session jobs tasks)
+    foreach(room base volume remote graph look components bricks formats projects annotation session jobs tasks)
         file(GLOB_RECURSE sources CONFIGURE_DEPENDS engine/${room}/*.cpp)
         list(APPEND checked_sources ${sources})
     endforeach()
@@ -26,7 +26,7 @@ if(SHVR_SANITIZE STREQUAL "" AND NOT CMAKE_BUILD_TYPE STREQUAL "Release")
     shvr_compile_together(shvr_checked ${checked_sources})
     add_library(shvr_checked STATIC EXCLUDE_FROM_ALL ${together} ${kernel_table})
     target_link_libraries(shvr_checked PUBLIC shvr_options nlohmann_json::nlohmann_json PNG::PNG TIFF::TIFF JPEG::JPEG
-        pugixml::pugixml PkgConfig::BLOSC PkgConfig::ZSTD PkgConfig::XXHASH ZLIB::ZLIB gdcm PkgConfig::OPENJPEG Threads::Threads glm::glm
+        pugixml::pugixml PkgConfig::BLOSC PkgConfig::ZSTD PkgConfig::XXHASH ZLIB::ZLIB gdcm PkgConfig::OPENJPEG PkgConfig::CURL Threads::Threads glm::glm
         shvr_checks)  # last: its options come after the others
     set_target_properties(shvr_checked PROPERTIES POSITION_INDEPENDENT_CODE OFF)
 endif()
