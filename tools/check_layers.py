@@ -27,17 +27,18 @@ MAY_INCLUDE = {
     "engine/look": "engine/base engine/volume shaders",
     "engine/components": "engine/base engine/volume shaders",
     "engine/annotation": "engine/base engine/volume shaders",
-    "engine/formats": "engine/base engine/volume",
+    "engine/remote": "engine/base",
+    "engine/formats": "engine/base engine/volume engine/remote",
     "engine/formats/raw": "engine/base engine/volume engine/formats",
     "engine/formats/slices": "engine/base engine/volume engine/formats",
     "engine/formats/tiff": "engine/base engine/volume engine/formats engine/formats/slices",
     "engine/formats/dicom": "engine/base engine/formats",
     "engine/formats/zip": "engine/base",
-    "engine/formats/zarr": "engine/base engine/volume engine/formats engine/formats/zip shaders",
+    "engine/formats/zarr": "engine/base engine/volume engine/remote engine/formats engine/formats/zip shaders",
     "engine/formats/headers": "engine/base engine/volume engine/formats engine/formats/raw",
     "engine/formats/export": "engine/base engine/volume engine/formats",
     "engine/bricks": "engine/base engine/volume engine/look shaders",
-    "engine/projects": "engine/base engine/volume engine/formats engine/formats/zarr shaders",
+    "engine/projects": "engine/base engine/volume engine/remote engine/formats engine/formats/zarr shaders",
     "engine/annotation/trace": "engine/base engine/volume engine/annotation",
     "engine/annotation/measures": "engine/base engine/volume engine/annotation engine/annotation/trace",
     "engine/annotation/patterns": "engine/base engine/volume engine/annotation/trace engine/annotation/measures",
@@ -50,10 +51,10 @@ MAY_INCLUDE = {
     "engine/annotation/work": "engine/base engine/volume engine/annotation engine/annotation/files "
     "engine/annotation/trace engine/annotation/writers engine/projects",
     "engine/session": "engine/base engine/touch engine/volume engine/look engine/annotation engine/annotation/files "
-    "engine/annotation/trace engine/formats engine/formats/zarr engine/projects",
+    "engine/annotation/trace engine/remote engine/formats engine/formats/zarr engine/projects",
     "engine/jobs": "engine/base",
     "engine/pages": "engine/base",
-    "engine/tasks": "engine/base engine/volume engine/look engine/components engine/formats/export engine/annotation "
+    "engine/tasks": "engine/base engine/volume engine/remote engine/look engine/components engine/formats/export engine/annotation "
     "engine/annotation/trace engine/annotation/measures engine/annotation/patterns engine/annotation/files "
     "engine/annotation/writers engine/projects engine/session engine/jobs",
     "engine/device": "engine/base engine/volume engine/gpu engine/passes engine/look engine/bricks engine/annotation "
@@ -85,13 +86,13 @@ MAY_INCLUDE = {
     "engine/workbench/bindings": "engine/base engine/session engine/workbench/models engine/workbench/actions "
     "engine/workbench/sight engine/workbench/edits engine/workbench/appearance",
     "engine/workbench/words": "engine/annotation/trace engine/annotation/work engine/session engine/workbench/bindings",
-    "engine/workbench/document": "engine/base engine/annotation/trace engine/annotation/work engine/session engine/jobs "
+    "engine/workbench/document": "engine/base engine/remote engine/annotation/trace engine/annotation/work engine/session engine/jobs "
     "engine/picture engine/live haptics engine/workbench/touch engine/workbench/models engine/workbench/actions "
     "engine/workbench/sight",
     "engine/workbench/desk": "engine/base engine/session engine/jobs engine/workbench/touch engine/workbench/models "
     "engine/workbench/actions engine/workbench/lists engine/workbench/sight engine/workbench/bindings "
     "engine/workbench/document",
-    "engine/workbench/services": "engine/base engine/look engine/annotation/operations engine/annotation/work engine/session engine/tasks engine/live "
+    "engine/workbench/services": "engine/base engine/remote engine/look engine/annotation/operations engine/annotation/work engine/session engine/tasks engine/live "
     "engine/workbench/models engine/workbench/actions engine/workbench/sight engine/workbench/edits "
     "engine/workbench/words engine/workbench/document engine/workbench/desk",
     "engine/workbench": "engine/base engine/workbench/actions engine/workbench/lists engine/workbench/desk "
@@ -114,7 +115,7 @@ MAY_INCLUDE = {
     "tools/bench": "engine/base engine/annotation engine/bricks engine/components engine/pages engine/projects engine/session "
     "tests/reference tools/golden tools/report",
     "tools/golden": "engine/base engine/annotation/script engine/session engine/live engine/pages shaders",
-    "tools": "engine/base engine/pages engine/volume engine/graph engine/gpu engine/projects engine/annotation/script engine/annotation/trace "
+    "tools": "engine/base engine/remote engine/pages engine/volume engine/graph engine/gpu engine/projects engine/annotation/script engine/annotation/trace "
     "engine/annotation/work engine/annotation/writers engine/session engine/jobs engine/tasks engine/picture engine/live "
     "haptics haptics/devices haptics/hid ui engine/study engine/study/report engine/workbench "
     "engine/workbench/touch "
@@ -147,7 +148,8 @@ THIRD_PARTIES = {
     "libtiff": (r"tiff(io)?\.h", r"engine/formats/(tiff|export)/|tests/support/tiff_files\.h"),
     "libjpeg": (r"j(peglib|error)\.h", r"engine/formats/slices/|tests/unit/formats/slices/"),
     "pugixml": (r"pugixml", r"engine/formats/tiff/|engine/annotation/trace/"),
-    "xxHash": (r"xxhash", r"engine/(volume|formats/zarr|projects|annotation/work)/"),
+    "xxHash": (r"xxhash", r"engine/(volume|remote|formats/zarr|projects|annotation/work)/"),
+    "libcurl": (r"curl/", r"engine/remote/"),
     "CLI11": (r"CLI/", r"tools/cli/"),
     "doctest": (r"doctest", r"tests/"),
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/base/error.h"
+#include "engine/base/waits/waits.h"
 
 namespace shvr {
 
@@ -207,6 +208,7 @@ void BrickStore::note_failure(const BrickKey& key, const std::string& message)
 
 void BrickStore::load(std::stop_token stop)
 {
+    const WaitsUntil waits([&] { return stop.stop_requested(); });
     BrickMaker maker(source_, window_);
     std::unique_lock lock(mutex_);
     while (!stop.stop_requested()) {

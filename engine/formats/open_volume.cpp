@@ -8,6 +8,7 @@
 #include "engine/formats/coarser.h"
 #include "engine/formats/readers.h"
 #include "engine/formats/restated.h"
+#include "engine/remote/address.h"
 #include "engine/volume/grid.h"
 #include "engine/volume/unit.h"
 
@@ -123,18 +124,6 @@ RawLayout parse_raw_layout(const std::string& text)
     return layout;
 }
 
-bool is_address(std::string_view path)
-{
-    // RFC 3986: a scheme is a letter, followed by letters, digits, "+", "-" and ".".
-    const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
-    const auto belongs = [&](char c) {
-        return is_letter(c) || (c >= '0' && c <= '9') || c == '+' || c == '-' || c == '.';
-    };
-    const size_t end = path.find("://");
-    return end != std::string_view::npos && end > 0 && is_letter(path.front()) &&
-           std::ranges::all_of(path.substr(0, end), belongs);
-}
-
 std::string_view format_of_name(std::string_view name)
 {
     const Reader* const reader = reader_of_name(name);
@@ -165,12 +154,12 @@ std::string format_names(std::string_view conjunction)
 std::unique_ptr<VolumeSource> open_volume(const std::filesystem::path& path, const OpenOptions& options)
 {
     std::error_code ignored;
-    if (is_address(path.string()) && !std::filesystem::exists(path, ignored))
-        fail(path.string(), ": is an address; expected ", NO_ADDRESS);
+    const bool is_remote = leads_to_network(path);
     const bool is_folder = std::filesystem::is_directory(path, ignored);
     std::string tried;
     for (const Reader& reader : READERS) {
         if (is_folder && !reader.reads_folders) continue;
+        if (is_remote && reader.open != open_ome_zarr) continue;
         if (std::unique_ptr<VolumeSource> source = reader.open(path, options)) {
             source = restated(coarser(std::move(source), path, options.level), path, options);
             check_spacing(path, source->info());

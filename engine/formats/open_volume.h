@@ -21,17 +21,15 @@ struct RawLayout {
 /// Fails with a `UsageError` that shows the expected form.
 RawLayout parse_raw_layout(const std::string& text);
 
-/// Whether `path` is a URL rather than a file path, as in https://host/scan.zarr or s3://bucket/scan.zarr. Reads
-/// nothing over a network.
-bool is_address(std::string_view path);
+/// What is expected where an address cannot stand.
 inline constexpr const char* NO_ADDRESS =
-    "the path of a file or folder on this machine, since nothing is read over a network: copy it here, or mount it";
+    "the path of a file or folder on this machine, since only volumes are read over a network";
 
 /// Whether `path`, judged by its name, is a zipped OME-Zarr (.ozx, .zip) or leads into one. A path into an archive,
 /// such as scan.ozx/0, does not exist in the file system. Reads nothing.
 bool leads_into_archive(const std::filesystem::path& path);
-/// A message for a project that was zipped as a whole, stating that only its image is read; empty for anything else.
-/// Reads the archive's directory.
+/// A message for a project that was zipped as a whole, or lies behind an address, stating that only its image is read;
+/// empty for anything else. Reads the archive's directory, or asks the server.
 std::string archived_project(const std::filesystem::path& path);
 
 /// Name of the format that a file name implies, such as "NIfTI" for scan.nii.gz; empty if it implies none. The file may

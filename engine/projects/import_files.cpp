@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <random>
 
 #include <nlohmann/json.hpp>
 
@@ -14,6 +15,7 @@
 #include "engine/formats/zarr/store/zarr_json.h"
 #include "engine/projects/levels/import_pyramid.h"
 #include "engine/projects/part_folder.h"
+#include "engine/remote/address.h"
 
 namespace shvr {
 namespace {
@@ -297,28 +299,29 @@ std::string import_identity(const VolumeSource& source, const fs::path& origin, 
 {
     const VolumeInfo& info = source.info();
     const auto list = [](const auto& vector) { return Json{vector.x, vector.y, vector.z}; };
-    const Json document = {
-        {"layout", LAYOUT},
-        {"way", way},
-        {"path", origin.string()},
-        {"files", signatures_of(origin)},
-        {"choice", options.choice},
-        {"size", list(info.size)},
-        {"type", name_of(info.type)},
-        {"spacing", list(info.spacing)},
-        {"unit", info.unit},
-        {"directions", {list(info.directions[0]), list(info.directions[1]), list(info.directions[2])}},
-        {"origin", list(info.origin)},
-        {"frame", info.frame},
-        {"warnings", info.warnings},
-        {"preparation", to_text(options.preparation)},
-        {"halving", int(options.halving)},
-        {"sigma", list(options.preparation.blur_sigma_voxels)},
-        {"compressor",
-         {int(options.compressor.kind), options.compressor.codec, options.compressor.level,
-          options.compressor.shuffle}},
-        {"version",
-         sentence(spelled(options.version.value_or(OmeZarrVersion::v0_4)), options.has_shards ? " in shards" : "")}};
+    Json document = {{"layout", LAYOUT},
+                     {"way", way},
+                     {"path", origin.string()},
+                     {"files", signatures_of(origin)},
+                     {"choice", options.choice},
+                     {"size", list(info.size)},
+                     {"type", name_of(info.type)},
+                     {"spacing", list(info.spacing)},
+                     {"unit", info.unit},
+                     {"directions", {list(info.directions[0]), list(info.directions[1]), list(info.directions[2])}},
+                     {"origin", list(info.origin)},
+                     {"frame", info.frame},
+                     {"warnings", info.warnings},
+                     {"preparation", to_text(options.preparation)},
+                     {"halving", int(options.halving)},
+                     {"sigma", list(options.preparation.blur_sigma_voxels)},
+                     {"compressor",
+                      {int(options.compressor.kind), options.compressor.codec, options.compressor.level,
+                       options.compressor.shuffle}},
+                     {"version", sentence(spelled(options.version.value_or(OmeZarrVersion::v0_4)),
+                                          options.has_shards ? " in shards" : "")}};
+    // Nothing tells whether a volume on another machine is still the same: its import is begun again, not continued.
+    if (leads_to_network(origin)) document["once"] = {std::random_device{}(), std::random_device{}()};
     return document.dump(-1, ' ', true, Json::error_handler_t::replace);
 }
 

@@ -16,6 +16,7 @@
 #include "engine/projects/import_plan.h"
 #include "engine/projects/import_sparse.h"
 #include "engine/projects/part_folder.h"
+#include "engine/remote/address.h"
 #include "engine/volume/voxel_numbers.h"
 
 namespace shvr {
@@ -61,7 +62,7 @@ public:
     Import(const VolumeSource& source, const fs::path& origin, const fs::path& project, const ImportOptions& options,
            const ImportPlan& plan)
         : source_(source),
-          origin_(fs::absolute(origin).lexically_normal()),
+          origin_(whole_path(origin)),
           options_(options),
           plan_(plan),
           preparation_(make_preparation(source, options.preparation, looking(options))),

@@ -13,6 +13,7 @@
 #include "engine/formats/zarr/project.h"
 #include "engine/look/session_color.h"
 #include "engine/projects/import_files.h"
+#include "engine/remote/address.h"
 #include "engine/session/label_looks.h"
 #include "engine/session/picture_session.h"
 #include "engine/session/session_keys.h"
@@ -38,7 +39,7 @@ JsonDocument document_for_volume(const fs::path& path)
 {
     JsonDocument document = session_document(R"({"shvr_session": 1, "volume": {}})", path.string());
     // Set directly, not parsed from text: a path need not be valid UTF-8.
-    document.value()["volume"]["path"] = fs::absolute(path).lexically_normal().string();
+    document.value()["volume"]["path"] = whole_path(take_query(path.string())).string();
     return document;
 }
 
@@ -98,7 +99,7 @@ fs::path session_file_of(const fs::path& path)
     std::error_code ignored;  // inaccessible files are treated as absent
     if (!fs::exists(path, ignored)) {
         if (leads_into_archive(path)) return {};
-        if (is_address(path.string())) fail(path.string(), ": is an address; expected ", NO_ADDRESS);
+        if (is_address(path.string())) return {};  // of a volume; its session would be a file here
         fail(path.string(), ": does not exist; expected a session file (.json), a project folder or a volume file");
     }
     if (!fs::is_directory(path, ignored)) return is_session_file(path) ? path : fs::path();
@@ -120,7 +121,8 @@ namespace {
 void expect_volume_of_picture(const fs::path& picture, const Session& session)
 {
     std::error_code ignored;
-    if (session.procedural || fs::exists(session.volume_path, ignored) || leads_into_archive(session.volume_path))
+    if (session.procedural || fs::exists(session.volume_path, ignored) || leads_into_archive(session.volume_path) ||
+        leads_to_network(session.volume_path))
         return;
     fail(picture.string(), ": is a picture of ", session.volume_path.string(),
          ", which is not there; expected it where it was, as seen from the picture: put both back, or say where it is "

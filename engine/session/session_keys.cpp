@@ -11,6 +11,7 @@
 
 #include "engine/annotation/trace/trace_file.h"
 #include "engine/base/text.h"
+#include "engine/remote/address.h"
 #include "engine/volume/grid.h"
 #include "engine/volume/unit.h"
 
@@ -63,6 +64,12 @@ const About PATH{.meaning = "path of the volume's file or folder",
                  .allowed = "path",
                  .standard = "required for files",
                  .is_required = true};
+const About VOLUME_PATH{.meaning =
+                            "path of the volume's file or folder, or the address of an OME-Zarr, as "
+                            "https://host/scan.zarr or s3://bucket/scan.zarr",
+                        .allowed = PATH_OR_ADDRESS,
+                        .standard = "required for files",
+                        .is_required = true};
 const About RAW{.meaning =
                     "layout of a file without a header, `\"256x256x108:int16:little:0\"`: size, type, byte order and "
                     "bytes to skip; the last two are optional. `volume.path` may then be the first of numbered files "
@@ -166,7 +173,7 @@ void volume_fields(Fields& f, Session& session)
         raw_fields(f, session.volume_path, session.raw_layout);
         return nodata_field(f, session.open_options.nodata);
     }
-    f.path("path", session.volume_path, PATH);
+    f.path("path", session.volume_path, VOLUME_PATH);
     f.mention("raw", RAW);
     f.mention("procedural", PROCEDURAL);
     f.text("channel", session.open_options.channel,

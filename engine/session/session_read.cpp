@@ -5,6 +5,7 @@
 
 #include "engine/base/text.h"
 #include "engine/look/session_color.h"
+#include "engine/remote/address.h"
 #include "engine/session/session_keys.h"
 
 namespace shvr {
@@ -122,6 +123,15 @@ public:
         if (has_controls(text)) node.refuse("a path");
         static_assert(PATH_MAX == 4096);
         if (text.size() >= PATH_MAX) node.refuse("a path of less than 4096 bytes");
+        if (is_address(text) && about.allowed == std::string_view(PATH_OR_ADDRESS)) {
+            // The query of an address is a credential, and stays out of the session and of messages.
+            value = node.checked([&] {
+                const std::string address = take_query(text);
+                static_cast<void>(parse_address(address));
+                return address;
+            });
+            return;
+        }
         if (is_address(text)) node.refuse(NO_ADDRESS);
         value = std::filesystem::absolute(folder_ / text).lexically_normal();
     }

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/look/session_color.h"
+#include "engine/remote/address.h"
 #include "engine/session/kept_settings.h"
 #include "engine/session/lasting_settings.h"
 #include "engine/session/session_keys.h"
@@ -14,6 +15,7 @@ using OrderedJson = nlohmann::ordered_json;
 
 std::string path_text(const std::filesystem::path& path, const std::filesystem::path& folder)
 {
+    if (leads_to_network(path)) return path.string();
     const std::filesystem::path whole = std::filesystem::absolute(folder / ".").lexically_normal();
     const std::filesystem::path relative = path.lexically_relative(whole);
     // The files of a project lie in its folder shvr or next to that folder, and move together with it.

@@ -1,11 +1,16 @@
 #include "engine/tasks/describe_task.h"
 
+#include "engine/remote/address.h"
+
 namespace shvr {
 
 void fields(Fields& f, DescribeTask& task)
 {
     f.path("input", task.input,
-           {.meaning = "volume, session or project folder", .standard = "required", .is_required = true});
+           {.meaning = "volume, session or project folder, or the address of a volume",
+            .allowed = PATH_OR_ADDRESS,
+            .standard = "required",
+            .is_required = true});
     f.flag("exact", task.exact,
            {"go through all voxels, also of volumes so large that a sample or a coarser level would do"});
     incomplete_field(f, task.allows_incomplete, "voxels that cannot be read are left out of every number");
@@ -17,7 +22,8 @@ void fields(Fields& f, DescribeTask& task)
 DescribeResult run(const DescribeTask& task, ProgressReporter& reporter)
 {
     std::error_code ignored;
-    const bool is_there = std::filesystem::exists(task.input, ignored) || leads_into_archive(task.input);
+    const bool is_there =
+        std::filesystem::exists(task.input, ignored) || leads_into_archive(task.input) || leads_to_network(task.input);
     const bool is_bare = is_there && session_file_of(task.input).empty();
     OpenedSession opened;
     Gaps gaps = gaps_of(task.allows_incomplete, task.names);

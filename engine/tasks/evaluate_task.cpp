@@ -10,6 +10,7 @@
 #include "engine/annotation/files/mask_source.h"
 #include "engine/annotation/trace/trace_file.h"
 #include "engine/base/text.h"
+#include "engine/remote/address.h"
 #include "engine/volume/voxel_walk.h"
 
 namespace shvr {
@@ -233,8 +234,11 @@ private:
 void fields(Fields& f, EvaluateTask& task)
 {
     f.path("truth_mask", task.truth_mask,
-           {.meaning = "the true mask: .mask, or a volume of uint8", .standard = "required", .is_required = true});
-    f.path("mask", task.mask, {.meaning = "the mask to evaluate", .standard = "none"});
+           {.meaning = "the true mask: .mask, or a volume of uint8",
+            .allowed = PATH_OR_ADDRESS,
+            .standard = "required",
+            .is_required = true});
+    f.path("mask", task.mask, {.meaning = "the mask to evaluate", .allowed = PATH_OR_ADDRESS, .standard = "none"});
     texts_field(f, "truth_group", task.truth_groups,
                 {.meaning = "reads group FROM of the true mask as group TO",
                  .allowed = "texts, each FROM=TO",
@@ -243,7 +247,9 @@ void fields(Fields& f, EvaluateTask& task)
            {.meaning = "the true trace: .graphml, .txt, .swc, .rsml", .standard = "none"});
     f.path("trace", task.trace, {.meaning = "the trace to evaluate", .standard = "none"});
     f.path("volume", task.volume,
-           {.meaning = "that all are of: size, spacing and unit where no file states them", .standard = "none"});
+           {.meaning = "that all are of: size, spacing and unit where no file states them",
+            .allowed = PATH_OR_ADDRESS,
+            .standard = "none"});
     f.number("slack", task.slack, {0.0, 1e15},
              {.meaning = "how far apart two balls may be and still count as touching",
               .unit = "physical units",

@@ -6,6 +6,7 @@
 
 #include "engine/annotation/writers/hold.h"
 #include "engine/base/text.h"
+#include "engine/remote/address.h"
 #include "engine/volume/grid.h"
 #include "engine/volume/unit.h"
 
@@ -88,7 +89,10 @@ private:
 void fields(Fields& f, ImportTask& task)
 {
     f.path("volume", task.volume,
-           {.meaning = "the volume's file or folder", .standard = "required", .is_required = true});
+           {.meaning = "the volume's file, folder or address",
+            .allowed = PATH_OR_ADDRESS,
+            .standard = "required",
+            .is_required = true});
     f.path("project", task.project,
            {.meaning = "the folder to make, an OME-Zarr image", .standard = "required", .is_required = true});
     if (const About about{.meaning = "a box is taken out of the volume", .standard = "none"};

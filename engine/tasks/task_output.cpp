@@ -8,6 +8,7 @@
 #include "engine/base/atomic_writer.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
+#include "engine/remote/address.h"
 
 namespace shvr {
 
@@ -96,6 +97,9 @@ void check_output_is_not(const fs::path& input, const fs::path& output)
 
 void check_output_folder(const std::filesystem::path& path)
 {
+    if (leads_to_network(path))
+        fail(path.string(),
+             ": cannot be written: nothing is written over a network; expected a folder on this machine");
     std::filesystem::path folder = std::filesystem::absolute(path).lexically_normal();
     std::error_code ignored;
     while (!std::filesystem::exists(folder, ignored) && folder.has_relative_path()) folder = folder.parent_path();

@@ -7,6 +7,7 @@
 #include "engine/annotation/writers/hold.h"
 #include "engine/base/assets.h"
 #include "engine/base/text.h"
+#include "engine/remote/address.h"
 #include "engine/workbench/workbench.h"
 #include "tools/cli/cli.h"
 #include "tools/cli/rest.h"
@@ -220,7 +221,8 @@ std::shared_ptr<Hold> hold_of(const std::string& project, const Common& common)
 /// Without a project, a script's work on a volume would not be stored anywhere.
 [[noreturn]] void refuse_bare_volume(const std::string& project)
 {
-    const std::filesystem::path volume = std::filesystem::path(project).lexically_normal();
+    const std::filesystem::path given(project);
+    const std::filesystem::path volume = leads_to_network(given) ? given.filename() : given.lexically_normal();
     std::filesystem::path suggested = volume.has_filename() ? volume : volume.parent_path();
     suggested = suggested.extension().empty() ? suggested += "-project" : suggested.replace_extension();
     fail(project, ": is a volume, and annotation is kept only in projects; expected one, as made by: shvr import ",

@@ -124,7 +124,7 @@ void add_import(CLI::App& program)
 {
     auto options = std::make_shared<ImportCommandOptions>();
     CLI::App* command = program.add_subcommand("import", "Makes a project of a volume");
-    command->add_option("VOLUME", options->volume, "Volume file or folder")->required();
+    command->add_option("VOLUME", options->volume, "Volume file or folder, or the address of an OME-Zarr")->required();
     command->add_option("PROJECT", options->project, "Folder to make; an OME-Zarr image")->required();
     command
         ->add_option("--crop", options->crop, "Take a box out of the volume, in voxels; the second corner is outside")

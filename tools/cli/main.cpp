@@ -9,8 +9,11 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include "engine/base/text.h"
+#include "engine/remote/address.h"
 #include "tools/cli/cli.h"
 #include "tools/cli/stop.h"
 
@@ -54,6 +57,22 @@ void refuse_empty(int argc, char** argv)
     }
 }
 
+/// Keeps the queries of addresses, which are credentials, and takes them out of the arguments, before any of those is
+/// printed or stored.
+std::vector<std::string> without_queries(int argc, char** argv)
+{
+    constexpr std::string_view SETTING = "volume.path=";
+    std::vector<std::string> arguments;
+    for (int i = 1; i < argc; ++i) {
+        const std::string argument = argv[i];
+        const size_t setting = argument.find(SETTING);
+        const size_t begin = setting == std::string::npos ? 0 : setting + SETTING.size();
+        arguments.push_back(argument.substr(0, begin) + shvr::take_query(argument.substr(begin)));
+    }
+    std::ranges::reverse(arguments);  // the order in which CLI11 takes them
+    return arguments;
+}
+
 int run(int argc, char** argv)
 {
     CLI::App program("SHVR: see, feel and annotate tubular structures in 3-D scans", "shvr");
@@ -81,13 +100,10 @@ int run(int argc, char** argv)
     for (CLI::App* command : program.get_subcommands({})) command->set_version_flag("--version", version);
     refuse_empty(argc, argv);
     try {
-        char view[] = "view";
-        char* alone[] = {argv[0], view};
-        if (argc == 1)
-            program.parse(2, alone);
-        else
-            program.parse(argc, argv);     // runs the command's callback
-    } catch (const CLI::Success& asked) {  // --help, --version
+        std::vector<std::string> arguments = without_queries(argc, argv);
+        if (arguments.empty()) arguments.emplace_back("view");
+        program.parse(std::move(arguments));  // runs the command's callback
+    } catch (const CLI::Success& asked) {     // --help, --version
         return program.exit(asked);
     } catch (const CLI::ParseError& error) {
         if (program.get_subcommands().empty()) throw shvr::UsageError(no_command(program, argv[1]));

@@ -9,6 +9,7 @@
 #include <ctime>
 
 #include "engine/base/atomic_writer.h"
+#include "engine/base/waits/waits.h"
 #include "tools/cli/stop_deadline.h"
 
 namespace shvr::cli {
@@ -105,6 +106,7 @@ void end_in_words()
 
 StopRequest::StopRequest()
 {
+    end_all_waits_by(is_requested);
     command_listens = true;
 }
 

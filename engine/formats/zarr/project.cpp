@@ -15,6 +15,7 @@
 #include "engine/formats/open_volume.h"
 #include "engine/formats/zarr/store/zarr_json.h"
 #include "engine/formats/zarr/store/zarr_store.h"
+#include "engine/remote/address.h"
 #include "engine/volume/grid.h"
 
 namespace shvr {
@@ -365,12 +366,13 @@ ValueRange range_of(VoxelType type, std::span<const std::byte> element)
 
 std::string archived_project(const std::filesystem::path& path)
 {
-    if (!leads_into_archive(path)) return {};
+    const bool is_remote = leads_to_network(path);
+    if (!is_remote && !leads_into_archive(path)) return {};
     const std::optional<ZarrPlace> place = zarr_place(path);
     if (!place || !place->has(PROJECT_RECORD)) return {};
-    return sentence(path.string(),
-                    ": is a project in an archive, of which only the image is read; expected its folder, ",
-                    "for annotations, looks and statistics: unpack the archive");
+    return sentence(path.string(), ": is a project ", is_remote ? "on another machine" : "in an archive",
+                    ", of which only the image is read; expected its folder, for annotations, looks and statistics: ",
+                    is_remote ? "copy it to this machine" : "unpack the archive");
 }
 
 }  // namespace shvr

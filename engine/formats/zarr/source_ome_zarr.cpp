@@ -18,9 +18,11 @@
 #include "engine/formats/zarr/ome_place.h"
 #include "engine/formats/zarr/ome_zarr.h"
 #include "engine/formats/zarr/project_knowledge.h"
+#include "engine/formats/zarr/store/remote_store.h"
 #include "engine/formats/zarr/store/zarr_json.h"
 #include "engine/formats/zarr/zarr_gaps.h"
 #include "engine/formats/zarr/zarr_volume.h"
+#include "engine/remote/address.h"
 #include "engine/volume/grid.h"
 #include "shaders/bricks.h"
 
@@ -31,6 +33,8 @@ namespace fs = std::filesystem;
 
 constexpr int64_t CACHE_BYTES = int64_t{64} << 20;
 constexpr int MAX_LEVELS = 24;
+/// Remote chunks that are requested together: as many decoded bytes, but not more chunks.
+constexpr int64_t PREPARED_BYTES = int64_t{64} << 20, MAX_PREPARED = 64;
 
 class OmeZarrSource : public VolumeSource {
 public:
@@ -90,9 +94,33 @@ private:
     void read_stored(int level, const VoxelBox& box, std::span<std::byte> voxels) const
     {
         const ZarrVolume& volume = volumes_[size_t(level)];
+        std::span<const Size3> wanted;
+        const std::vector<Size3> uncached = volume.is_remote() ? uncached_chunks(level, box) : std::vector<Size3>();
+        wanted = uncached;
+        const int64_t chunk_bytes = int64_t(volume.metadata().chunk_bytes());
+        const size_t most = size_t(std::clamp<int64_t>(PREPARED_BYTES / chunk_bytes, 1, MAX_PREPARED));
         volume.read(box, voxels, [&](const Size3& chunk) {
+            if (!wanted.empty() && wanted.front() == chunk) {
+                const size_t count = std::min(most, wanted.size());
+                volume.prepare(wanted.first(count));
+                wanted = wanted.subspan(count);
+            }
             return cache_.get({level, volume.index_of(chunk)}, [&] { return volume.load(chunk); });
         });
+    }
+
+    /// Returns the chunks of a box that must be loaded, in the order in which ZarrVolume::read asks for them.
+    std::vector<Size3> uncached_chunks(int level, const VoxelBox& box) const
+    {
+        const ZarrVolume& volume = volumes_[size_t(level)];
+        const Size3 end = (box.upper - int64_t{1}) / volume.chunk() + int64_t{1};
+        std::vector<Size3> chunks;
+        Size3 at, first = box.lower / volume.chunk();
+        for (at.z = first.z; at.z < end.z; ++at.z)
+            for (at.y = first.y; at.y < end.y; ++at.y)
+                for (at.x = first.x; at.x < end.x; ++at.x)
+                    if (!cache_.has({level, volume.index_of(at)})) chunks.push_back(at);
+        return chunks;
     }
 
     /// A level whose size was rounded down lacks the last voxels along an axis. Adds the chunks that would contain only
@@ -144,7 +172,7 @@ private:
 
 std::string name_of_folder(const fs::path& path)
 {
-    const fs::path whole = fs::absolute(path).lexically_normal();
+    const fs::path whole = whole_path(path);
     return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
 }
 
@@ -252,6 +280,11 @@ void compare_names(const ZarrPlace& array, const OmeImage& image, const ZarrMeta
 std::vector<ZarrVolume> open_levels(const ZarrPlace& folder, int version, const OmeImage& image,
                                     const OpenOptions& options, std::vector<std::string>& warnings)
 {
+    std::vector<ZarrWant> wants;
+    for (const OmeImage::Level& level : image.levels)
+        wants.push_back({.key = (folder / level.path).key(version == 2 ? ".zarray" : "zarr.json"),
+                         .bytes = MAX_ZARR_METADATA_BYTES});
+    folder.store->prepare(wants);
     const ZarrPlace array = folder / image.levels[0].path;
     const ZarrMetadata first = read_zarr_metadata(array, version);
     if (first.shape.size() != image.axes) {
@@ -309,6 +342,8 @@ std::unique_ptr<VolumeSource> open_image(const ZarrPlace& place, const ZarrNode&
     read_ome_place(node.attributes(), image.levels[0].translation, info);
     ProjectKnowledge knowledge = read_project_knowledge(folder, info, volumes);
     info.warnings.insert(info.warnings.end(), left_out.begin(), left_out.end());
+    if (std::string offline = offline_warning(*place.store); !offline.empty())
+        info.warnings.push_back(std::move(offline));
     if (node.ome()["image-label"].exists())
         info.warnings.emplace_back("the image holds labels: pictures blend neighbours, and imports need --labels");
     const StoredNumber number = volumes[0].metadata().stored;
@@ -428,6 +463,8 @@ std::unique_ptr<VolumeSource> open_ome_zarr(const fs::path& path, const OpenOpti
     const std::optional<ZarrNode> node = read_zarr_node(*place);
     std::error_code ignored;
     if (!node && fs::is_directory(path, ignored)) return nullptr;
+    if (!node && place->store->is_remote())
+        fail(path.string(), ": has no zarr.json, .zattrs, .zgroup or .zarray; expected the address of an OME-Zarr");
     if (!node) refuse_archive(path, *place);
     if (node->is_array) return open_array(*place, node->version, options);
     check_ome_version(*node);

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "engine/base/error.h"
+#include "engine/base/progress.h"
 #include "engine/base/text.h"
 #include "engine/formats/byte_order.h"
 #include "engine/formats/zarr/zarr_codec.h"
@@ -111,6 +112,45 @@ std::optional<std::vector<std::byte>> ZarrChunks::read(std::span<const int64_t> 
     return stored;
 }
 
+void ZarrChunks::prepare(std::span<const std::vector<int64_t>> chunks) const
+{
+    const int64_t longest = longest_stored(int64_t(metadata_.chunk_bytes()));
+    if (metadata_.sharding) prepare_indices(chunks);
+    std::vector<ZarrWant> wants;
+    for (const std::vector<int64_t>& chunk : chunks) {
+        const std::string key = key_of(chunk);
+        if (!metadata_.sharding) {
+            wants.push_back({.key = array_.key(key), .bytes = longest});
+            continue;
+        }
+        try {
+            const Part part = part_of(chunk, key);
+            if (part.bytes > 0 && part.bytes <= uint64_t(longest) && part.offset < uint64_t{1} << 62)
+                wants.push_back({.key = array_.key(key), .offset = int64_t(part.offset), .bytes = int64_t(part.bytes)});
+        } catch (const Stopped&) {
+            throw;
+        } catch (const Error&) {
+            continue;  // reading the chunk reports it
+        }
+    }
+    array_.store->prepare(wants);
+}
+
+/// Prepares the indices of the shards of these chunks that are not kept.
+void ZarrChunks::prepare_indices(std::span<const std::vector<int64_t>> chunks) const
+{
+    const ZarrSharding& sharding = *metadata_.sharding;
+    const int64_t bytes = sharding.index_bytes(metadata_.chunks);
+    std::vector<ZarrWant> wants;
+    for (const std::vector<int64_t>& chunk : chunks) {
+        const std::string key = array_.key(key_of(chunk));
+        const bool is_known = std::ranges::find(wants, key, &ZarrWant::key) != wants.end() ||
+                              indices_.has({0, int64_t(shard_number(chunk))});
+        if (!is_known) wants.push_back({.key = key, .offset = sharding.is_index_first ? 0 : -bytes, .bytes = bytes});
+    }
+    array_.store->prepare(wants);
+}
+
 bool ZarrChunks::is_missing(std::span<const int64_t> chunk) const
 {
     const std::string key = key_of(chunk);
@@ -209,16 +249,23 @@ ZarrChunks::Part ZarrChunks::part_of(std::span<const int64_t> chunk, const std::
         const int64_t along = sharding.shape[axis] / metadata_.chunks[axis];
         place = place * size_t(along) + size_t(chunk[axis] % along);
     }
-    uint64_t number = 0;  // index of the shard's chunk; unsigned, because it may wrap around in arrays of absurd sizes
-    for (size_t axis = 0; axis < chunk.size(); ++axis) {
-        const int64_t shards = (metadata_.shape[axis] - 1) / sharding.shape[axis] + 1;
-        number = number * uint64_t(shards) + uint64_t(chunk[axis] / (sharding.shape[axis] / metadata_.chunks[axis]));
-    }
-    const auto index = indices_.get({0, int64_t(number)}, [&] { return index_of(shard); });
+    const auto index = indices_.get({0, int64_t(shard_number(chunk))}, [&] { return index_of(shard); });
     if (index->empty()) return {ABSENT, ABSENT};
     Part part{};
     std::memcpy(&part, index->data() + place * sizeof(Part), sizeof(Part));
     return part;
+}
+
+/// Returns the index of a chunk's shard; unsigned, because it may wrap around in arrays of absurd sizes.
+uint64_t ZarrChunks::shard_number(std::span<const int64_t> chunk) const
+{
+    const ZarrSharding& sharding = *metadata_.sharding;
+    uint64_t number = 0;
+    for (size_t axis = 0; axis < chunk.size(); ++axis) {
+        const int64_t shards = (metadata_.shape[axis] - 1) / sharding.shape[axis] + 1;
+        number = number * uint64_t(shards) + uint64_t(chunk[axis] / (sharding.shape[axis] / metadata_.chunks[axis]));
+    }
+    return number;
 }
 
 /// Returns a shard's index, with one part per chunk; empty if the shard does not exist.
@@ -226,14 +273,12 @@ Block ZarrChunks::index_of(const std::string& shard) const
 {
     const ZarrSharding& sharding = *metadata_.sharding;
     const std::string name = array_.path_of(shard).string();
-    const std::optional<int64_t> bytes = array_.store->size_of(array_.key(shard));
-    if (!bytes) return {};
     const int64_t index_bytes = sharding.index_bytes(metadata_.chunks);
-    if (*bytes < index_bytes)
-        fail(name, ": holds ", *bytes, " bytes; expected at least ", index_bytes, ", the index of a shard");
-    Block stored(static_cast<size_t>(index_bytes));
-    array_.store->read_part(array_.key(shard), sharding.is_index_first ? 0 : *bytes - index_bytes, stored);
-    std::span<const std::byte> content = stored;
+    const auto edge = array_.store->read_edge(array_.key(shard), !sharding.is_index_first, index_bytes);
+    if (!edge) return {};
+    if (edge->value_bytes < index_bytes)
+        fail(name, ": holds ", edge->value_bytes, " bytes; expected at least ", index_bytes, ", the index of a shard");
+    std::span<const std::byte> content = edge->bytes;
     for (int i = 0; i < sharding.checksums; ++i) content = without_checksum(content, name + " (index)");
     Block index(content.begin(), content.end());
     if (sharding.is_big_endian) swap_bytes(index, sizeof(uint64_t));

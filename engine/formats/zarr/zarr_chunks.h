@@ -32,6 +32,9 @@ public:
     /// Returns the stored bytes; null if the chunk is missing. Fails if they cannot be read, or if there are more than
     /// a chunk can need.
     std::optional<std::vector<std::byte>> read(std::span<const int64_t> chunk) const;
+    /// Reads chunks of a remote array in parallel, for calls of `read` that follow. Failures are left to those.
+    void prepare(std::span<const std::vector<int64_t>> chunks) const;
+    bool is_remote() const { return array_.store->is_remote(); }
     /// True if the chunk is certainly not stored; false if it is stored, or if that cannot be determined.
     bool is_missing(std::span<const int64_t> chunk) const;
     /// Calls `take` with the indices of every stored chunk that matches `at` (null: any index), in no particular order.
@@ -64,6 +67,8 @@ private:
     bool list_shard(std::span<const int64_t> shard, const Take& take) const;
     Part part_of(std::span<const int64_t> chunk, const std::string& shard) const;
     Block index_of(const std::string& shard) const;
+    uint64_t shard_number(std::span<const int64_t> chunk) const;
+    void prepare_indices(std::span<const std::vector<int64_t>> chunks) const;
 
     ZarrPlace array_;
     ZarrMetadata metadata_;

@@ -111,6 +111,8 @@ ZarrGaps::~ZarrGaps() = default;
 
 std::optional<ValueRange> ZarrGaps::range(int level, const VoxelBox& box) const
 {
+    // Callers draw a picture meanwhile, and must not wait for a network.
+    if (volumes_[size_t(level)].is_remote()) return std::nullopt;
     ValueRange range{std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest()};
     for (int below = level; below >= 0; --below) {
         if (!are_missing(below, chunks_below(level, box, below)).value_or(false)) return std::nullopt;
@@ -127,6 +129,7 @@ std::optional<ValueRange> ZarrGaps::range(int level, const VoxelBox& box) const
 
 std::optional<std::vector<glm::ivec3>> ZarrGaps::stored(int level, int64_t most) const
 {
+    if (volumes_[size_t(level)].is_remote()) return std::nullopt;
     Level& known = *levels_[size_t(level)];
     const std::scoped_lock lock(known.mutex);
     known.list(volumes_[size_t(level)], most);

@@ -7,7 +7,8 @@
 // The chunks of a level are listed once, on the first query (ZarrChunks::list), and kept as 8 bytes each. If a query
 // needs only a few chunks, they are probed one by one instead, which is faster; so no level is listed in dense images,
 // where a coarse level already answers the query. Levels with more than MAX_LISTED chunks are listed only on request;
-// without that list, a query that would need more than MAX_FILES probes is not answered. Any thread may call these.
+// without that list, a query that would need more than MAX_FILES probes is not answered. Nothing is known about remote
+// images, where nothing can be listed and each probe is a request. Any thread may call these.
 
 #include <memory>
 #include <mutex>

@@ -105,6 +105,13 @@ Block ZarrVolume::load(const Size3& chunk) const
     return {};
 }
 
+void ZarrVolume::prepare(std::span<const Size3> chunks) const
+{
+    std::vector<std::vector<int64_t>> numbers;
+    for (const Size3& chunk : chunks) numbers.push_back(numbers_of(chunk));
+    chunks_->prepare(numbers);
+}
+
 bool ZarrVolume::is_missing(const Size3& chunk) const
 {
     if (expected_) return expected_checksum(chunk) == 0;

@@ -51,6 +51,10 @@ public:
     /// Returns the voxels of a chunk, x fastest, in native byte order; empty if all of them are the fill value.
     Block load(const Size3& chunk) const;
 
+    /// Reads chunks of a remote array in parallel, for calls of `load` that follow.
+    void prepare(std::span<const Size3> chunks) const;
+    bool is_remote() const { return chunks_->is_remote(); }
+
     /// Whether the chunk is not stored and is expected to be missing, so that it holds the fill value. Reads at most
     /// the index of a shard.
     bool is_missing(const Size3& chunk) const;

@@ -8,6 +8,7 @@
 #include "engine/base/file.h"
 #include "engine/live/densities.h"
 #include "engine/live/trace_marks.h"
+#include "engine/remote/address.h"
 #include "engine/session/annotation_files.h"
 #include "engine/session/kept_settings.h"
 #include "engine/session/label_looks.h"
@@ -40,6 +41,10 @@ std::optional<std::string> text_of_session(const std::filesystem::path& path)
 Document::Read Document::read(OpenedSession opened, const std::filesystem::path& input,
                               const std::vector<std::string>& overridden, Work::Opening opening, bool may_write_outside)
 {
+    if (leads_to_network(input))
+        fail(input.string(),
+             ": is a volume on another machine; expected a session file on this one that names it as its volume.path, "
+             "where annotation can be kept");
     Session& session = opened.session;
     const VolumeInfo& volume = opened.source->info();
     const std::filesystem::path path = session_path_of(input);

@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "engine/base/text.h"
+#include "engine/remote/address.h"
 #include "engine/session/picture_session.h"
 #include "engine/session/session_keys.h"
 #include "engine/session/session_patch.h"
@@ -35,7 +36,7 @@ std::filesystem::path opened_for_picture(const std::filesystem::path& path, cons
 std::filesystem::path session_saved_for(const std::filesystem::path& volume)
 {
     std::error_code ignored;
-    if (!session_file_of(volume).empty()) return {};
+    if (leads_to_network(volume) || !session_file_of(volume).empty()) return {};
     const std::filesystem::path beside = session_path_of(volume);
     const std::optional<std::string> text = text_of_session(beside);
     if (!text) return {};

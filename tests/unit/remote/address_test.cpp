@@ -21,7 +21,7 @@ bool contains(const std::string& text, const std::string& part)
     return text.find(part) != std::string::npos;
 }
 
-// Kind (Servers): addresses of three schemes, with ports, spaces, encoded bytes, and keys that hold "=", "+" and "%".
+// Kind (Servers): addresses of three schemes, with ports, spaces, encoded bytes, and keys that hold "=", "+" and "%"
 TEST_CASE("remote: addresses become URLs")
 {
     CHECK(url_of(parse_address("HTTP://Example.ORG:8080/Scan.zarr/")) == "http://example.org:8080/Scan.zarr");

@@ -27,7 +27,7 @@ TEST_CASE("remote: redirects that are followed")
     CHECK(!redirect_of("it", "http://127.0.0.1/x", "http://127.0.0.1:9/x", true).refuses_local);
 }
 
-// Kind (Servers): redirects to other schemes, from https to http, to this machine, and with credentials.
+// Kind (Servers): redirects to other schemes, from https to http, to this machine, and with credentials
 TEST_CASE("remote: redirects that are refused, without their query in the message")
 {
     for (const auto& [from, location] : {std::pair{"http://a/x", "file:///etc/passwd?secret"},

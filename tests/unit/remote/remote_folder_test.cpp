@@ -97,7 +97,7 @@ TEST_CASE("remote: only what failed is asked for again, in one round")
     for (size_t i = 0; i < wants.size(); ++i) CHECK(objects[i].bytes == bytes_of_text(folder.name_of(wants[i].key)));
 }
 
-// Kind (Servers): servers that ignore ranges, send other bytes than asked for, or contradict themselves.
+// Kind (Servers): servers that ignore ranges, send other bytes than asked for, or contradict themselves
 TEST_CASE("remote: answers that contradict the question are refused")
 {
     const RemoteWant part{.key = "k", .part = ByteRange{2, 3}};
@@ -163,7 +163,7 @@ struct CacheFolder {
     std::filesystem::path path;
 };
 
-// Kind (Servers): servers that vanish and change while objects of them are kept; kept files that are damaged.
+// Kind (Servers): servers that vanish and change while objects of them are kept; kept files that are damaged
 TEST_CASE("remote: kept objects are confirmed by their ETag, and taken where no server answers")
 {
     const CacheFolder folder;

@@ -56,6 +56,12 @@ void ChunkCache::make_room()
     }
 }
 
+bool ChunkCache::has(const Key& key) const
+{
+    const std::lock_guard lock(mutex_);
+    return entries_.contains(key);
+}
+
 int64_t ChunkCache::bytes() const
 {
     const std::lock_guard lock(mutex_);

@@ -30,7 +30,8 @@ public:
     /// threads that wait for the block then call their own `make`.
     std::shared_ptr<const Block> get(const Key& key, const std::function<Block()>& make);
 
-    int64_t bytes() const;  ///< of cached blocks; exceeds the budget only if the latest block alone does
+    bool has(const Key& key) const;  ///< whether the block is cached or being made
+    int64_t bytes() const;           ///< of cached blocks; exceeds the budget only if the latest block alone does
 
 private:
     struct Entry {

@@ -13,7 +13,9 @@
 #include "engine/base/text.h"
 #include "engine/formats/open_volume.h"
 #include "engine/formats/zarr/store/chunk_cache.h"
+#include "engine/formats/zarr/store/remote_store.h"
 #include "engine/formats/zip/zip_archive.h"
+#include "engine/remote/address.h"
 
 namespace shvr {
 namespace {
@@ -177,6 +179,17 @@ std::optional<PathIntoArchive> split(const fs::path& path)
 
 }  // namespace
 
+std::optional<ZarrStore::Edge> ZarrStore::read_edge(const std::string& key, bool is_end, int64_t bytes) const
+{
+    const std::optional<int64_t> value_bytes = size_of(key);
+    if (!value_bytes) return std::nullopt;
+    Edge edge{.value_bytes = *value_bytes};
+    if (*value_bytes < bytes) return edge;
+    edge.bytes.resize(size_t(bytes));
+    read_part(key, is_end ? *value_bytes - bytes : 0, edge.bytes);
+    return edge;
+}
+
 bool ZarrStore::has(const std::string& key) const
 {
     try {
@@ -218,6 +231,7 @@ std::optional<ZarrPlace> zarr_place(const fs::path& path)
 {
     std::error_code ignored;
     if (fs::is_directory(path, ignored)) return zarr_folder(path);
+    if (leads_to_network(path)) return ZarrPlace{open_remote_store(path.string())};
     const std::optional<PathIntoArchive> found = split(path);
     if (!found) return std::nullopt;
     return ZarrPlace{std::make_shared<ArchiveStore>(found->archive)} / found->inside;

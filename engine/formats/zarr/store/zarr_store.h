@@ -1,6 +1,6 @@
 #pragma once
-// Storage of the values of a Zarr hierarchy, under keys such as "0/zarr.json": files of a folder, or entries of a zip
-// archive (.ozx, or .zip). Any thread may call these.
+// Storage of the values of a Zarr hierarchy, under keys such as "0/zarr.json": files of a folder, entries of a zip
+// archive (.ozx, or .zip), or objects below an address (remote_store.h). Any thread may call these.
 //
 // An .ozx is a zip whose root is the root of the hierarchy (https://ngff.openmicroscopy.org/rfc/9/). Its entries should
 // be stored; deflated entries are read too. A path may lead into an archive: "scan.ozx/0".
@@ -17,6 +17,14 @@
 
 namespace shvr {
 
+/// A value, or a part of it, that will be read soon.
+struct ZarrWant {
+    std::string key{};
+    /// First byte of the part; below 0: the part is the value's last bytes. Null: the whole value.
+    std::optional<int64_t> offset{};
+    int64_t bytes = 0;  ///< size of the part, or the most that a whole value may have
+};
+
 class ZarrStore {
 public:
     virtual ~ZarrStore() = default;
@@ -28,6 +36,20 @@ public:
     virtual std::optional<std::vector<std::byte>> read(const std::string& key, int64_t max_bytes) const = 0;
     /// Fills `part` with the bytes of a value from `offset` on. Fails if the value has fewer bytes.
     virtual void read_part(const std::string& key, int64_t offset, std::span<std::byte> part) const = 0;
+
+    /// The first or the last bytes of a value.
+    struct Edge {
+        std::vector<std::byte> bytes{};
+        int64_t value_bytes = 0;  ///< size of the whole value
+    };
+    /// Reads the first or the last bytes of a value, or none if the value has fewer; null if it does not exist. Fails
+    /// if it cannot be read.
+    virtual std::optional<Edge> read_edge(const std::string& key, bool is_end, int64_t bytes) const;
+
+    /// Whether each access takes long, so that many should be made at once, and values cannot be listed.
+    virtual bool is_remote() const { return false; }
+    /// Reads values in parallel, for calls of read, read_part and read_edge that follow. Failures are left to those.
+    virtual void prepare(std::span<const ZarrWant>) const {}
 
     /// Calls `take` with every key that begins with `prefix` (empty, or ending with a slash), in no particular order
     /// and with the prefix removed. If `take` returns false, stops and returns false too. Fails if a folder cannot be
@@ -52,8 +74,8 @@ struct ZarrPlace {
     ZarrPlace operator/(const std::filesystem::path& path) const;
 };
 
-/// Returns the place of a folder or an archive, or of a path into an archive; null for other files. Fails if an archive
-/// is damaged. The content need not be Zarr.
+/// Returns the place of a folder, an archive or an address, or of a path into an archive; null for other files. Fails
+/// if an archive is damaged, or an address cannot be read. The content need not be Zarr.
 std::optional<ZarrPlace> zarr_place(const std::filesystem::path& path);
 ZarrPlace zarr_folder(const std::filesystem::path& folder);
 
