@@ -9,6 +9,7 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/remote/address.h"
+#include "engine/session/session.h"
 
 namespace shvr {
 
@@ -80,6 +81,13 @@ fs::path written_path(const fs::path& path)
     fs::path target = fs::is_symlink(path, ignored) && !fs::is_directory(path, ignored) ? link_target(path) : path;
     collect_temporary_files(target.parent_path());
     return target;
+}
+
+fs::path file_of_input(const fs::path& input)
+{
+    std::error_code ignored;
+    const fs::path session = fs::is_directory(input, ignored) ? session_file_of(input) : fs::path();
+    return session.empty() ? input : session;
 }
 
 void check_output_is_not(const fs::path& input, const fs::path& output)

@@ -19,6 +19,9 @@ std::filesystem::path written_path(const std::filesystem::path& path);
 /// Fails if writing `output` would replace or extend `input`, which the task reads: a file, or a folder of slices, in
 /// which a new picture would be read as a slice.
 void check_output_is_not(const std::filesystem::path& input, const std::filesystem::path& output);
+/// Returns the file that a command reads for an input: the session in a project's folder, or else the input itself.
+/// Pictures in that folder are no slices of the project.
+std::filesystem::path file_of_input(const std::filesystem::path& input);
 /// Checks that a folder for files, or an image that is a folder, can be written; it and its parents may not exist yet.
 void check_output_folder(const std::filesystem::path& path);
 

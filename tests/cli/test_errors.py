@@ -202,6 +202,12 @@ class Usage(ErrorTest):
         self.assertEqual({path: path.read_bytes() for path in self.folder.rglob("*") if path.is_file()}, before)
         self.check("export", of_slices, "--mask", slices / "x.nrrd")   # no slice
         self.check("info", slices)
+        project = self.folder / "project"   # its volume lies in it, and its pictures are no slices
+        (project / "shvr").mkdir(parents=True)
+        scan.rename(project / "scan.nrrd")
+        self.write_session("project/shvr/session.json", volume={"path": "../scan.nrrd"})
+        for name in ("front.png", "side.png"):
+            self.check("render", project, "-o", project / name, "--size", "8x8")
 
     def test_without_a_driver_the_package_is_named(self):
         session = self.write_session()

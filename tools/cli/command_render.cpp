@@ -59,7 +59,7 @@ void run_render(RenderCommandOptions options)
 {
     check_output("--output", options.output, {".png", ".pfm"});
     options.output = written_path(options.output).string();
-    check_output_is_not(options.input, options.output);
+    check_output_is_not(file_of_input(options.input), options.output);
     if (!options.size.empty()) {
         const glm::uvec2 size = parse_size(options.size);
         options.common.settings.push_back(sentence("render.size=[", size.x, ",", size.y, "]"));

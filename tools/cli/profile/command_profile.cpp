@@ -136,7 +136,8 @@ void run_profile(ProfileCommandOptions options)
                 throw UsageError(
                     sentence(option, " and ", other, " are both '", output, "'; expected a file for each"));
     for (const std::string& output : {options.trace, options.csv, options.html, options.graph})
-        for (const std::string& input : {options.input, options.script}) check_output_is_not(input, output);
+        for (const std::string& input : {options.input, options.script})
+            check_output_is_not(file_of_input(input), output);
     if (!options.size.empty()) {
         const glm::uvec2 size = parse_size(options.size);
         options.common.settings.push_back(sentence("render.size=[", size.x, ",", size.y, "]"));
