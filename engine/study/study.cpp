@@ -8,7 +8,9 @@
 #include <set>
 #include <thread>
 
+#include "engine/annotation/files/mask_file.h"
 #include "engine/annotation/measures/trace_score.h"
+#include "engine/annotation/trace/trace_file.h"
 #include "engine/base/atomic_file.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
@@ -28,6 +30,25 @@ std::string file_stem(const StudyItem& item)
 {
     if (item.trait >= hand_traits().size()) return "rows";
     return sentence("hand-", hand_traits()[item.trait].name, "-", digits_of(item.factor));
+}
+
+/// In the study's folder.
+fs::path annotation_path(const StudyItem& item)
+{
+    const StudyCondition& c = item.condition;
+    return fs::path("annotations") / sentence(item.trait < hand_traits().size() ? file_stem(item) + "-" : "",
+                                              spelled(c.task), "-", spelled(c.touch), "-", spelled(c.law), "-",
+                                              digits_of(c.probe_radii), "-", digits_of(c.noise), "-seed-", item.seed,
+                                              "-annotator-", item.annotator,
+                                              c.task == StudyTask::trace ? ".graphml" : ".mask");
+}
+
+void save_annotation(const fs::path& path, const StudyScene& scene, const StudyAnnotation& made)
+{
+    if (made.row.condition.task == StudyTask::trace)
+        save_trace(path, made.trace, space_of(scene.volume().info()));
+    else
+        save_mask(path, made.mask);
 }
 
 bool is_row_of(const StudyItem& item, const StudyRow& row)
@@ -112,9 +133,12 @@ private:
 
     void check_folder() const
     {
-        std::error_code error;
-        fs::create_directories(run_.folder, error);
-        if (error) fail(run_.folder.string(), ": cannot be created: ", error.message());
+        for (const fs::path& folder : {run_.folder, run_.folder / "annotations"}) {
+            if (folder != run_.folder && !run_.keeps_annotations) continue;
+            std::error_code error;
+            fs::create_directories(folder, error);
+            if (error) fail(folder.string(), ": cannot be created: ", error.message());
+        }
         if (!fs::exists(note_path())) {
             const std::string text = note();
             write_file_atomically(note_path(), std::as_bytes(std::span(text)));
@@ -136,6 +160,7 @@ private:
                 continue;
             const std::vector<StudyRow> rows = read_study_rows(entry.path());
             for (size_t i = 0; i < plan_.items.size(); ++i) {
+                if (run_.keeps_annotations && !fs::exists(run_.folder / annotation_path(plan_.items[i]))) continue;
                 const std::string stem = file_stem(plan_.items[i]);
                 if (name != stem + ".csv" && !name.starts_with(stem + "-part-")) continue;
                 for (const StudyRow& row : rows)
@@ -188,9 +213,10 @@ private:
             const StudyItem& item = plan_.items[i];
             HandTraits traits;
             if (item.trait < hand_traits().size()) traits.*hand_traits()[item.trait].value *= item.factor;
-            StudyRow row = annotate(scene, item.condition, item.annotator, item.seed, traits).row;
+            const StudyAnnotation made = annotate(scene, item.condition, item.annotator, item.seed, traits);
+            if (run_.keeps_annotations) save_annotation(run_.folder / annotation_path(item), scene, made);
             const std::lock_guard lock(mutex_);
-            rows_[i] = row;
+            rows_[i] = made.row;
             made_items_.insert(i);
             ++made_;
         }

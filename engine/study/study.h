@@ -35,15 +35,17 @@ struct StudyPair {
     uint32_t annotator = 1, other = 1, seed = 1;
 };
 
-/// What `--conditions` and `--seeds` choose instead of a size's own.
+/// What `--conditions`, `--seeds` and `--annotators` choose instead of a size's own.
 struct StudyChoice {
     StudySize size = StudySize::standard;
     std::optional<uint32_t> seeds{};
     std::vector<StudyCondition> conditions{};  ///< empty: those of the size
+    std::vector<uint32_t> annotators{};        ///< each annotates each phantom; empty: one for each, in turn
 };
 
 struct StudyPlan {
-    int64_t side = 256;  ///< side of the phantoms, voxels
+    int64_t side = 256;                ///< side of the phantoms, voxels
+    std::vector<uint32_t> annotators;  ///< as in StudyChoice, ascending
     std::vector<StudyItem> items;
     std::vector<StudyPair> pairs;
 };
@@ -62,7 +64,9 @@ struct StudyRun {
     std::filesystem::path folder;
     int threads = 0;           ///< 0: one for each core
     int64_t part = 0, of = 1;  ///< runs every `of`-th phantom, from number `part` on
-    Progress progress{};       ///< may throw, which ends the run after the phantoms in work
+    /// Writes each trace and each mask into the folder `annotations`; those that are missing there are made again.
+    bool keeps_annotations = false;
+    Progress progress{};  ///< may throw, which ends the run after the phantoms in work
 };
 struct StudyVariation {
     size_t trait = 0;

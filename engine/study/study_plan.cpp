@@ -25,8 +25,11 @@ uint32_t annotator_of(uint32_t seed)
 
 void add(StudyPlan& plan, const StudyCondition& condition, uint32_t seeds, size_t trait = SIZE_MAX, double factor = 1.0)
 {
-    for (uint32_t seed = 1; seed <= seeds; ++seed)
-        plan.items.push_back({condition, annotator_of(seed), seed, trait, factor});
+    for (uint32_t seed = 1; seed <= seeds; ++seed) {
+        if (plan.annotators.empty()) plan.items.push_back({condition, annotator_of(seed), seed, trait, factor});
+        for (const uint32_t annotator : plan.annotators)
+            plan.items.push_back({condition, annotator, seed, trait, factor});
+    }
 }
 
 StudyCondition without_touch(StudyCondition condition)
@@ -123,7 +126,9 @@ StudyCondition study_centre(StudyTask task)
 StudyPlan plan_study(const StudyChoice& choice)
 {
     const bool is_small = choice.size == StudySize::small;
-    StudyPlan plan{.side = is_small ? 96 : 256, .items = {}, .pairs = {}};
+    StudyPlan plan{.side = is_small ? 96 : 256, .annotators = choice.annotators, .items = {}, .pairs = {}};
+    std::ranges::sort(plan.annotators);
+    plan.annotators.erase(std::ranges::unique(plan.annotators).begin(), plan.annotators.end());
     for (const StudyCondition& condition : choice.conditions)
         add(plan, condition, choice.seeds.value_or(is_small ? 2 : 10));
     if (!choice.conditions.empty()) return plan;

@@ -20,6 +20,8 @@ struct StudyCommandOptions {
     Common common;
     std::string folder, conditions, size = "standard", part;
     std::optional<uint32_t> seeds;
+    std::vector<uint32_t> annotators;
+    bool keeps_annotations = false;
 };
 
 /// "2/8"
@@ -74,6 +76,8 @@ StudyReport report_of(const StudyCommandOptions& options, const StudyPlan& plan,
         .no_baselines = {}};
     if (options.seeds) report.command += sentence(" --seeds ", *options.seeds);
     if (!options.conditions.empty()) report.command += " --conditions FILE";
+    for (const uint32_t annotator : plan.annotators)
+        report.command += sentence(annotator == plan.annotators.front() ? " --annotators " : ",", annotator);
     const HandTraits traits;
     for (const HandTrait& trait : hand_traits())
         report.hand.push_back({.name = std::string(trait.name),
@@ -98,7 +102,8 @@ void write_text(const std::filesystem::path& path, const std::string& text)
 
 void run_study_command(const StudyCommandOptions& options)
 {
-    StudyChoice choice{.size = size_named(options.size), .seeds = options.seeds, .conditions = {}};
+    StudyChoice choice{
+        .size = size_named(options.size), .seeds = options.seeds, .conditions = {}, .annotators = options.annotators};
     const auto [part, of] = parse_part(options.part);
     if (!options.conditions.empty()) choice.conditions = read_study_conditions(options.conditions);
     const StudyPlan plan = plan_study(choice);
@@ -107,6 +112,7 @@ void run_study_command(const StudyCommandOptions& options)
                        .threads = options.common.threads,
                        .part = part,
                        .of = of,
+                       .keeps_annotations = options.keeps_annotations,
                        .progress = work.begin("annotating phantoms for " + options.folder)};
     const StudyResults results = run_study(plan, run);
     clear_progress();
@@ -146,6 +152,15 @@ void add_study(CLI::App& program)
         ->check(CLI::Range(1, 10000));
     command->add_option("--conditions", options->conditions,
                         "CSV file with the columns task, touch, law, probe_radii, noise, instead of the size's own");
+    command
+        ->add_option("--annotators", options->annotators,
+                     "Numbers, 1 to 10: each of them annotates each phantom; without it, one for each phantom in turn")
+        ->delimiter(',')
+        ->type_name("N,N...")
+        ->check(CLI::Range(1U, STUDY_ANNOTATORS));
+    command->add_flag("--keep-annotations", options->keeps_annotations,
+                      "Writes each trace and mask into the folder annotations, where those that are missing are made "
+                      "again");
     command->add_option("--task", options->part, "Makes part I of N only, from 0 on; without it, all that is missing")
         ->type_name("I/N");
     command->add_option("--threads", options->common.threads, "Worker threads; 0: one per core")

@@ -76,6 +76,26 @@ class Study(CliTest):
         self.assertEqual(self.study("begun", *chosen)["made"], 2)
         self.assertEqual((self.folder / "begun" / "rows.csv").read_bytes(), whole)
 
+    def test_annotations_are_kept_on_request_and_score_as_their_rows_say(self):
+        chosen = ["--conditions", self.conditions("trace,none,potential,1.5,10", "paint,none,potential,1.5,10"),
+                  "--seeds", 1, "--annotators", "8,6,8"]
+        self.assertEqual(self.study("kept", *chosen)["made"], 4)
+        self.assertFalse((self.folder / "kept" / "annotations").exists())
+        self.assertEqual(self.study("kept", *chosen, "--keep-annotations")["made"], 4)  # to have their annotations
+        self.assertEqual(self.study("kept", *chosen, "--keep-annotations")["made"], 0)
+        rows = self.rows("kept")
+        self.assertEqual([(row["task"], row["annotator"]) for row in rows],
+                         [("trace", "6"), ("trace", "8"), ("paint", "6"), ("paint", "8")])
+        truth = self.check_json("phantom", "section", "--size", 96, "--noise", 10, "-o", self.folder)
+        for row in rows:
+            kind = {"trace": ("--trace", "graphml"), "paint": ("--mask", "mask")}[row["task"]]
+            name = f"{row['task']}-none-potential-1.5-10-seed-1-annotator-{row['annotator']}.{kind[1]}"
+            scores = self.check_json("evaluate", "--truth-mask", truth["truth_partial_mask" if row["task"] == "paint"
+                                                                       else "truth_mask"],
+                                     kind[0], self.folder / "kept" / "annotations" / name)
+            found, score = (("dice_partial", "dice") if row["task"] == "paint" else ("node_score", "node_score"))
+            self.assertAlmostEqual(float(row[found]), scores[score], places=9)
+
     def test_what_does_not_fit_is_refused(self):
         study = ["study", "--size", "small", "-o", self.folder / "study"]
         for lines, says in [(["trace,all,mean,1.5,10"], "line 2, column touch is \"all\"; expected one of none"),
@@ -87,6 +107,8 @@ class Study(CliTest):
         for part in ("3/3", "a/2", "1", "0/0", "-1/2"):
             with self.subTest(part=part):
                 self.check_refused(*study, "--task", part, status=2, says=["--task is"])
+        for annotators in ("0", "11", "3,x", ""):
+            self.check_refused(*study, f"--annotators={annotators}", status=2, says=["--annotators"])
         (self.folder / "study").mkdir(exist_ok=True)
         (self.folder / "study" / "phantoms.txt").write_text("side 7\n")
         chosen = ["--conditions", self.conditions("trace,none,potential,1.5,10"), "--seeds", 1]
