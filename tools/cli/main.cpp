@@ -52,8 +52,9 @@ void refuse_empty(int argc, char** argv)
         if (is_empty_option)
             throw shvr::UsageError(
                 shvr::sentence(argument.substr(0, argument.size() - 1), " is empty; expected a value"));
-        throw shvr::UsageError(shvr::sentence("argument ", i, before.empty() ? "" : ", after ", before,
-                                              before.empty() ? "" : ",", " is empty; expected a name or a value"));
+        const std::string named = shvr::take_query(std::string(before));
+        throw shvr::UsageError(shvr::sentence("argument ", i, named.empty() ? "" : ", after ", named,
+                                              named.empty() ? "" : ",", " is empty; expected a name or a value"));
     }
 }
 

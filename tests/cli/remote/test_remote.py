@@ -244,6 +244,7 @@ class Secrets(RemoteTest):
             result = run(*command)
             self.assertEqual(result.returncode, 0, result.stderr)
             self.assertNotIn("Secret", result.stdout + result.stderr)
+        self.assertNotIn("Secret", self.check_refused("info", f"{address}?{secret}", "", status=2, says=["is empty"]))
         for place in [self.folder / "a.png", *(self.folder / "p.zarr").rglob("*")]:
             self.assertTrue(not place.is_file() or b"Secret" not in place.read_bytes(), place)
         server.check = lambda *_: False
