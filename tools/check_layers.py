@@ -43,7 +43,7 @@ MAY_INCLUDE = {
     "engine/annotation/measures": "engine/base engine/volume engine/annotation engine/annotation/trace",
     "engine/annotation/patterns": "engine/base engine/volume engine/annotation/trace engine/annotation/measures",
     "engine/annotation/files": "engine/base engine/volume engine/annotation engine/annotation/trace engine/formats "
-    "engine/formats/export engine/formats/zarr engine/projects shaders",
+    "engine/formats/export engine/formats/tiff engine/formats/zarr engine/projects shaders",
     "engine/annotation/operations": "engine/base engine/volume engine/components engine/annotation engine/annotation/trace",
     "engine/annotation/script": "engine/base engine/annotation engine/annotation/trace engine/annotation/operations "
     "engine/session",

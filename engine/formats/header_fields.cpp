@@ -187,4 +187,17 @@ void apply_spacing(VolumeInfo& info, const std::optional<glm::dvec3>& spacing, c
     info.warnings.push_back(sentence("spacing is stated without a unit; ", info.unit, " assumed"));
 }
 
+void warn_of_labels(std::vector<std::string>& warnings, const char* holds)
+{
+    constexpr const char* ADVICE = ": pictures blend neighbours, and imports need --labels";
+    const auto says_so = [&](const std::string& warning) { return warning.ends_with(ADVICE); };
+    if (std::ranges::none_of(warnings, says_so)) warnings.push_back(std::string(holds) + ADVICE);
+}
+
+void warn_of_content(std::vector<std::string>& warnings, std::string_view content)
+{
+    if (content == "mask") warn_of_labels(warnings, "the file holds groups of a mask, not a scan");
+    if (content == "offsets") warnings.emplace_back("the file holds density offsets, not a scan");
+}
+
 }  // namespace shvr

@@ -64,6 +64,12 @@ std::filesystem::path file_stated(const std::filesystem::path& header, const std
 void apply_spacing(VolumeInfo& info, const std::optional<glm::dvec3>& spacing, const std::optional<std::string>& unit,
                    const char* usual_unit);
 
+/// Adds the warning that a file given as a scan holds labels; `holds` begins it: "the image holds labels". Adds nothing
+/// if a warning says so already: a project of labels keeps the warnings of its source.
+void warn_of_labels(std::vector<std::string>& warnings, const char* holds);
+/// Likewise for what a file of this program states as its content: "mask" or "offsets". Others add nothing.
+void warn_of_content(std::vector<std::string>& warnings, std::string_view content);
+
 inline constexpr const char* NO_BYTE_ORDER = "no byte order stated; little-endian assumed";
 
 }  // namespace shvr

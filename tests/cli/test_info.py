@@ -74,17 +74,39 @@ class Info(CliTest):
              "path": [[4, 4, 4]]},
             {"op": "density", "brush": "fill", "threshold": 0, "offset": 5, "radius": 2, "path": [[4, 4, 4]]},
             {"op": "save"}]))
-        files = [self.folder / name for name in ("mask.nrrd", "mask.zarr", "offsets.nrrd")]
+        files = [self.folder / name for name in ("mask.nrrd", "mask.zarr", "mask.tif", "offsets.nrrd", "offsets.tif")]
         self.check("export", project, "--mask", files[0])
-        self.check("export", project, "--mask", files[1], "--offset", files[2])
-        for path, says in zip(files, ("holds groups of a mask", "holds labels", "holds density offsets")):
+        self.check("export", project, "--mask", files[1], "--offset", files[3])
+        self.check("export", project, "--mask", files[2], "--offset", files[4])
+        for path, says in zip(files, ("holds groups of a mask", "holds labels", "holds groups of a mask",
+                                      "holds density offsets", "holds density offsets")):
             with self.subTest(file=path.name):
                 self.assertTrue([line for line in self.check_json("info", path)["warnings"] if says in line])
                 for command in (["render", path, "-o", self.folder / "a.png", "--size", "8x8"],
                                 ["label", path, "--threshold", "1"], ["import", path, self.folder / f"{path.name}.project"]):
                     self.assertIn(says, self.check(*command).stderr)
         # As annotation they are read without a word.
-        self.assertEqual(self.check("evaluate", "--truth-mask", files[0], "--mask", files[0]).stderr, "")
+        for path in (files[0], files[2]):
+            self.assertEqual(self.check("evaluate", "--truth-mask", path, "--mask", path).stderr, "")
+        # A scan that holds the same two values and comes in the same formats is none.
+        for name in ("scan.nrrd", "scan.tif"):
+            self.check("phantom", "sphere", "--size", "8", "-o", self.folder / "sphere")
+            self.check("label", self.folder / "sphere" / "sphere.nhdr", "--threshold", "100", "-o", self.folder / name)
+            self.assertFalse([line for line in self.check_json("info", self.folder / name)["warnings"] if "holds" in line])
+
+    def test_a_project_of_labels_says_so_once(self):
+        project = self.folder / "project"
+        self.check("import", Volume((8, 8, 8), [100] * 512).write(self.folder), project)
+        self.check("annotate", project, "--script", self.write_script("s.jsonl", [
+            {"op": "paint", "brush": "fill", "group": 3, "threshold": 0, "radius": 2, "path": [[4, 4, 4]]},
+            {"op": "save"}]))
+        for name in ("mask.zarr", "mask.nrrd", "mask.tif"):
+            with self.subTest(file=name):
+                again = self.folder / f"{name}.project"
+                self.check("export", project, "--mask", self.folder / name)
+                self.check("import", self.folder / name, again, "--labels")
+                warnings = self.check_json("info", again)["warnings"]
+                self.assertEqual(len([line for line in warnings if "pictures blend neighbours" in line]), 1, warnings)
 
     def test_a_session_and_a_project_are_told_by_their_volume(self):
         header = Volume.noise((8, 8, 8), seed=2).write(self.folder)

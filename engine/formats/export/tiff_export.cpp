@@ -129,6 +129,7 @@ std::string description_of(const VolumeInfo& info)
     std::string lines = sentence("ImageJ=1.53t\nimages=", info.size.z, "\nslices=", info.size.z,
                                  "\nunit=", unit == "um" ? "micron" : unit, "\nspacing=", digits_of(info.spacing.z),
                                  "\nloop=false\n", "shvr_spacing=", digits_of(info.spacing), "\n");
+    if (info.format == "mask" || info.format == "offsets") lines += "shvr_content=" + info.format + "\n";
     if (!states_place(info)) return lines;
     lines += "shvr_frame=" + info.frame + "\nshvr_directions=";
     for (int axis = 0; axis < 3; ++axis) lines += (axis == 0 ? "" : " ") + digits_of(info.directions[axis]);

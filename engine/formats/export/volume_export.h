@@ -15,7 +15,8 @@
 
 namespace shvr {
 
-/// The key that distinguishes an exported mask or density offsets from a scan in NRRD: "shvr_content:=mask".
+/// The key that distinguishes an exported mask or density offsets from a scan: "shvr_content:=mask" in NRRD, and
+/// "shvr_content=mask" in the description of a TIFF.
 inline constexpr const char* NRRD_CONTENT_KEY = "shvr_content";
 
 bool is_volume_export(const std::filesystem::path& path);

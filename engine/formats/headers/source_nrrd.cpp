@@ -191,10 +191,8 @@ std::unique_ptr<VolumeSource> open_nrrd(const std::filesystem::path& path, const
     info.type = type;
     read_nrrd_space(fields, axes, info);
     warn_of_old_range(fields, info);
-    if (header.states_groups)
-        info.warnings.emplace_back(
-            "the file holds groups of a mask, not a scan: pictures blend neighbours, and imports need --labels");
-    if (header.states_offsets) info.warnings.emplace_back("the file holds density offsets, not a scan");
+    if (header.states_groups) warn_of_content(info.warnings, "mask");
+    if (header.states_offsets) warn_of_content(info.warnings, "offsets");
     RawVoxels voxels = place_voxels(header, info);
     voxels.channels = axes.channels;
     voxels.channel = chosen_channel(path.string(), options, axes.channels,

@@ -156,6 +156,16 @@ TiffDescription read_description(const TiffFile& file, std::string_view text, in
     return is_ome ? read_ome_description(file, start, samples, role) : TiffDescription();
 }
 
+std::string content_of_tiff(const std::filesystem::path& path)
+{
+    if (!TiffFile::begins(read_head(path, 8))) return {};
+    const TiffFile file(path);
+    const std::string text =
+        TiffPage(file, read_directories(file).pages.front().offset, 1).text(TIFFTAG_IMAGEDESCRIPTION);
+    const std::string_view start = trimmed(text);
+    return start.starts_with("ImageJ=") ? read_imagej_description(path.string(), start).content : std::string();
+}
+
 void apply_tiff_spacing(VolumeInfo& info, const TiffDescription& stated, const TiffFile& file, uint64_t directory,
                         const TiffPage& page)
 {

@@ -38,6 +38,7 @@ struct TiffDescription {
         std::string frame{};
     };
     Place place{};
+    std::string content{};  ///< "mask" or "offsets", as stated in our own files; "" if not stated
 
     bool counts_from_minus_32768 = false;  ///< true: signed 16 bits as ImageJ stores them
     std::vector<std::string> warnings{};
@@ -49,6 +50,9 @@ enum class TiffRole { whole, slice };
 /// `samples`: number of channels of an OME-TIFF that each pixel holds. Fails if the description is of a known kind but
 /// broken. In the role `whole`, also fails if the description covers more than this file.
 TiffDescription read_description(const TiffFile& file, std::string_view text, int samples, TiffRole role);
+
+/// Returns the content that a file states, as in `TiffDescription`; "" if it is no TIFF. Fails if the file is damaged.
+std::string content_of_tiff(const std::filesystem::path& path);
 
 /// Puts spacing and unit into `info`, with a warning for everything that had to be assumed. `page`: the first page.
 void apply_tiff_spacing(VolumeInfo& info, const TiffDescription& description, const TiffFile& file, uint64_t directory,

@@ -7,6 +7,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
+#include "engine/formats/header_fields.h"
 #include "engine/formats/tiff/tiff_description.h"
 
 namespace shvr {
@@ -93,11 +94,13 @@ std::optional<Value> numbers_of(const std::string& text)
 }
 
 /// Reads the lines "shvr_...", which only this program writes.
-void read_place(const Lines& lines, TiffDescription& description)
+void read_own_lines(const Lines& lines, TiffDescription& description)
 {
     description.place = {numbers_of<glm::dvec3, 3>(lines.text("shvr_spacing")),
                          numbers_of<glm::dvec3, 3>(lines.text("shvr_origin")),
                          numbers_of<glm::dmat3, 9>(lines.text("shvr_directions")), printable(lines.text("shvr_frame"))};
+    description.content = printable(lines.text("shvr_content"));
+    warn_of_content(description.warnings, description.content);
 }
 
 void read_calibration(const Lines& lines, TiffDescription& description)
@@ -150,7 +153,7 @@ TiffDescription read_imagej_description(const std::string& subject, std::string_
     if (const std::optional<double> spacing = lines.number("spacing"); spacing && std::isfinite(*spacing)) {
         if (*spacing != 0.0) description.spacing[2] = std::abs(*spacing);
     }
-    read_place(lines, description);
+    read_own_lines(lines, description);
     read_calibration(lines, description);
     return description;
 }

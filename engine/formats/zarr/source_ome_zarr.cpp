@@ -344,8 +344,7 @@ std::unique_ptr<VolumeSource> open_image(const ZarrPlace& place, const ZarrNode&
     info.warnings.insert(info.warnings.end(), left_out.begin(), left_out.end());
     if (std::string offline = offline_warning(*place.store); !offline.empty())
         info.warnings.push_back(std::move(offline));
-    if (node.ome()["image-label"].exists())
-        info.warnings.emplace_back("the image holds labels: pictures blend neighbours, and imports need --labels");
+    if (node.ome()["image-label"].exists()) warn_of_labels(info.warnings, "the image holds labels");
     const StoredNumber number = volumes[0].metadata().stored;
     return widened(std::make_unique<OmeZarrSource>(std::move(info), std::move(volumes), std::move(knowledge)), number,
                    folder.string());

@@ -213,13 +213,16 @@ TEST_CASE_FIXTURE(OnDevice, "a mask is not taken for a scan: it is loaded, refus
     desk.folder.write("small.nrrd", shrunk + "\n" + std::string(12 * 20 * 16, '\1'));
     desk.folder.write("small-mask.nrrd", shrunk + "shvr_content:=mask\n\n" + std::string(12 * 20 * 16, '\1'));
     desk.folder.write("small.mask", std::string(12 * 20 * 16, '\1'));
+    std::string foreign = bytes_of_file(desk.path("mask.tif"));
+    foreign.replace(foreign.find("shvr_content="), 12, "other_key123");
+    desk.folder.write("foreign.tif", foreign);
     for (const bool is_dropped : {false, true}) {
         CAPTURE(is_dropped);
         const auto take = [&](const char* name) {
             if (is_dropped) return perform(TakeFile{.path = desk.path(name)});
             perform(LoadAnnotation{.path = desk.path(name)});
         };
-        for (const char* name : {"mask.nrrd", "labels.zarr"}) {
+        for (const char* name : {"mask.nrrd", "mask.tif", "labels.zarr"}) {
             CAPTURE(name);
             erase();
             take(name);
@@ -230,17 +233,17 @@ TEST_CASE_FIXTURE(OnDevice, "a mask is not taken for a scan: it is loaded, refus
         }
         take("offsets.nrrd");
         CHECK(desk.said("its density offsets is already in use"));
-        // A TIFF states nothing: by intent it is a mask, dropped it may be another scan.
-        take("mask.tif");
+        // A TIFF of another program states nothing: by intent it is a mask, dropped it may be another scan.
+        take("foreign.tif");
         if (is_dropped) {
             REQUIRE(desk.bench.model().unclear_file);
-            CHECK(desk.bench.model().unclear_file->path == desk.path("mask.tif"));
+            CHECK(desk.bench.model().unclear_file->path == desk.path("foreign.tif"));
             CHECK(desk.bench.model().unclear_file->may_be_scan);
             CHECK(desk.bench.model().voxels_by_group[3] == 0);
             perform(DismissUnclearFile{});
             CHECK(desk.bench.model().unclear_file == nullptr);
-            take("mask.tif");
-            perform(TakeFile{.path = desk.path("mask.tif"), .use = FileUse::mask});
+            take("foreign.tif");
+            perform(TakeFile{.path = desk.path("foreign.tif"), .use = FileUse::mask});
         }
         CHECK(desk.bench.model().unclear_file == nullptr);
         CHECK(desk.bench.model().voxels_by_group[3] == painted);

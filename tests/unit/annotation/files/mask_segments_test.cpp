@@ -134,6 +134,21 @@ TEST_CASE("a new segmentation names its groups; a plain NRRD states that it is a
     CHECK_FALSE(stated_content(folder.path / "missing.nrrd"));
 }
 
+// Kind (Masks): a TIFF that states its content, one that does not, and a damaged one
+TEST_CASE("a mask exported as TIFF states that it is a mask; a TIFF of another program states nothing")
+{
+    const TemporaryFolder folder;
+    const std::filesystem::path file = folder.path / "mask.tif";
+    save_mask_as(file, painted(), volume(), {});
+    CHECK(stated_content(file) == StatedContent::mask);
+    std::string text = bytes_of_file(file);
+    const size_t key = text.find("shvr_content=mask");
+    REQUIRE(key != std::string::npos);
+    CHECK_FALSE(stated_content(folder.write("short.tif", text.substr(0, text.size() / 2))));
+    CHECK_FALSE(stated_content(folder.write("other.tif", text.replace(key, 12, "other_key123"))));
+    CHECK_FALSE(stated_content(folder.write("text.tif", "shvr_content=mask\n")));
+}
+
 TEST_CASE("malformed segments are left out with a warning")
 {
     const TemporaryFolder folder;
