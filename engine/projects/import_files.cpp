@@ -214,11 +214,11 @@ std::string number_attributes(const std::string& name, const VolumeInfo& info, c
     return text_of(attributes, 2);
 }
 
-fs::path number_image_target(const fs::path& folder, const std::string& kind)
+fs::path number_image_target(const fs::path& folder, const std::string& kind, bool replaces_any)
 {
     fs::path target = plain_path(folder);
     std::error_code ignored;
-    if (!fs::exists(fs::symlink_status(target, ignored)) ||
+    if (replaces_any || !fs::exists(fs::symlink_status(target, ignored)) ||
         (fs::is_directory(target, ignored) && fs::is_empty(target, ignored)))
         return target;
     const std::optional<ZarrNode> node = read_zarr_node(target);
@@ -229,11 +229,12 @@ fs::path number_image_target(const fs::path& folder, const std::string& kind)
     return target;
 }
 
-fs::path label_image_target(const fs::path& folder)
+fs::path label_image_target(const fs::path& folder, bool replaces_any)
 {
     const fs::path target = plain_path(folder);
     std::error_code error;
-    if (fs::exists(target, error) && !(fs::is_directory(target, error) && fs::is_empty(target, error))) {
+    if (!replaces_any && fs::exists(target, error) &&
+        !(fs::is_directory(target, error) && fs::is_empty(target, error))) {
         const std::optional<ZarrNode> node = read_zarr_node(target);
         const bool is_label_image =
             node && !fs::exists(target / PROJECT_RECORD, error) && node->ome()["image-label"].exists();

@@ -28,9 +28,10 @@ std::string import_session();
 
 /// Returns `folder` without "." and "..". Fails if it exists and is not a replaceable label image, or if it belongs to
 /// an image's labels and that image's list of labels cannot be read. Creates the parent folder.
-std::filesystem::path label_image_target(const std::filesystem::path& folder);
+std::filesystem::path label_image_target(const std::filesystem::path& folder, bool replaces_any = false);
 /// Returns `folder` without "." and "..". Fails if it exists and is not a `number_attributes` image of that kind.
-std::filesystem::path number_image_target(const std::filesystem::path& folder, const std::string& kind);
+std::filesystem::path number_image_target(const std::filesystem::path& folder, const std::string& kind,
+                                          bool replaces_any = false);
 /// Whether `target` is IMAGE/labels/NAME of an OME-Zarr image.
 bool belongs_to_image(const std::filesystem::path& target);
 /// Returns the version of the image that `target` belongs to (a hierarchy has one version); without an image, `wanted`;

@@ -179,6 +179,13 @@ std::string kept_in_words(const fs::path& image, const ForeignContent& content, 
         old.string(), ", copy from there what is still needed");
 }
 
+std::string replaced_in_words(const fs::path& image, const fs::path& old)
+{
+    return sentence(image.string(),
+                    ": was written by another program; expected it as this one knows it; it is kept as ", old.string(),
+                    ", and what is saved is this program's");
+}
+
 /// Writes a whole image. `attributes(folder)` returns the attributes of an image whose levels are in that folder.
 WrittenImage write_image(const VolumeSource& source, const VolumeInfo& info, int levels, const fs::path& target,
                          const std::vector<Size3>& chunks, const ImportOptions& options,
@@ -205,6 +212,9 @@ WrittenImage write_image(const VolumeSource& source, const VolumeInfo& info, int
     const auto& [entry, text] = files.back();
     ForeignContent content;
     switch (foreign) {
+        case Foreign::replaced:
+            if (!fs::exists(target)) break;
+            return {std::move(report), replaced_in_words(target, folder.commit_and_keep_old(entry))};
         case Foreign::excluded: content = desktop_files_in(target); break;
         case Foreign::kept: content = foreign_content(target, text); break;
         case Foreign::refused:  // checks again, because the work took a while
@@ -295,12 +305,15 @@ ImportReport write_label_image(const VolumeSource& labels, const fs::path& targe
 std::string save_label_image(const VolumeSource& labels, const fs::path& folder, const LabelImage& image,
                              const ImportOptions& options, Foreign foreign)
 {
-    const fs::path target = label_image_target(folder);
+    const bool replaces_any = foreign == Foreign::replaced;
+    const fs::path target = label_image_target(folder, replaces_any);
     const bool belongs = belongs_to_image(target);
     ImportOptions wanted = options;
     wanted.label_image = image;
     if (belongs) wanted.label_image->source = "../../";
-    wanted.version = label_image_version(target, options.version);
+    // Any version may be replaced, but that of the image to which the labels belong counts.
+    wanted.version = replaces_any && !belongs ? options.version.value_or(OmeZarrVersion::v0_4)
+                                              : label_image_version(target, options.version);
     const std::optional<std::vector<Size3>> chunks = stored_chunks(labels);
     SHVR_CHECK(chunks, "the source does not know what it stores");
     std::string kept = write_labels(labels, target, *chunks, wanted, foreign).kept;
@@ -312,7 +325,7 @@ std::string save_label_image(const VolumeSource& labels, const fs::path& folder,
 std::string save_number_image(const VolumeSource& numbers, const fs::path& folder, const std::string& kind,
                               const Progress& progress, Foreign foreign)
 {
-    const fs::path target = number_image_target(folder, kind);
+    const fs::path target = number_image_target(folder, kind, foreign == Foreign::replaced);
     const std::optional<std::vector<Size3>> chunks = stored_chunks(numbers);
     SHVR_CHECK(chunks, "the source does not know what it stores");
     const VolumeInfo& info = numbers.info();

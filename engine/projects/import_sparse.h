@@ -22,6 +22,7 @@ bool are_few(const std::vector<Size3>& chunks, const Size3& size);
 enum class Foreign {
     refused,   ///< the write fails
     kept,      ///< the old image gets another name (free_old_name)
+    replaced,  ///< likewise, whatever it contains: all of it is another program's
     excluded,  ///< the image is known to be as SHVR wrote it: nothing is compared
 };
 

@@ -1,6 +1,8 @@
 #pragma once
-// Writes one part of a document to its file. Any thread may call it.
+// Writes one part of a document to its file, and keeps what another program wrote there. Any thread may call these.
 
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,5 +18,28 @@ namespace shvr {
 std::string write_part(Part part, const Document& document, const WorkFiles& files,
                        const std::vector<LabelImage::Color>& looks, const Journal* journal, Foreign foreign,
                        const Progress& progress = {});
+
+/// The number of a file or folder on its disk, which a new one in its place does not have; 0 if there is none.
+uint64_t inode_of(const std::filesystem::path& path);
+
+/// A file of another program that is about to be replaced. From the construction on it also has its `old_of` name, so
+/// that it has its own name until the new file takes that, even if the process ends in between.
+class KeptFile {
+public:
+    /// Fails if the file can be neither linked nor copied. Does nothing if another process has moved it meanwhile.
+    explicit KeptFile(const std::filesystem::path& path);
+    /// Takes the second name away again if the file was not replaced.
+    ~KeptFile();
+    KeptFile(const KeptFile&) = delete;
+    KeptFile& operator=(const KeptFile&) = delete;
+    /// The second name; null if the file was gone.
+    const std::optional<std::filesystem::path>& old() const { return old_; }
+    bool is_replaced() const;
+
+private:
+    std::filesystem::path path_;
+    uint64_t inode_ = 0;
+    std::optional<std::filesystem::path> old_;
+};
 
 }  // namespace shvr

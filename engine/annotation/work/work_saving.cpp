@@ -1,13 +1,18 @@
 // Saves: the state to be written is copied at once, on the work's thread, and written on any thread.
 
+#include <sys/stat.h>
+
 #include <utility>
 
 #include "engine/annotation/files/mask_image.h"
 #include "engine/annotation/files/mask_import.h"
 #include "engine/annotation/files/mask_segments.h"
+#include "engine/annotation/files/offset_export.h"
 #include "engine/annotation/files/offset_import.h"
 #include "engine/annotation/work/part_writer.h"
 #include "engine/annotation/work/work.h"
+#include "engine/annotation/writers/no_replace.h"
+#include "engine/base/atomic_writer.h"
 
 namespace shvr {
 
@@ -55,6 +60,16 @@ void Work::note_file(const fs::path& file, Seen& seen)
     seen = seen_at(file);
 }
 
+namespace {
+
+/// Whether a part is saved as OME-Zarr at this path.
+bool is_saved_as_folder(Part part, const fs::path& file)
+{
+    return part != Part::trace && is_label_image(file) && (part == Part::mask || is_offset_export(file));
+}
+
+}  // namespace
+
 std::string write_part(Part part, const Document& document, const WorkFiles& files,
                        const std::vector<LabelImage::Color>& looks, const Journal* journal, Foreign foreign,
                        const Progress& progress)
@@ -95,6 +110,44 @@ std::function<void(const WorkFiles&)> Work::copier(std::vector<LabelImage::Color
             if (!file_of(to, part).empty() && (part == Part::mask || holds_any(document, part)))
                 write(part, document, to, looks, nullptr);
     };
+}
+
+// ---- Files of other programs ----------------------------------------------------------------------------------------
+
+uint64_t inode_of(const fs::path& path)
+{
+    struct stat status {};
+    return ::stat(path.c_str(), &status) == 0 ? status.st_ino : 0;
+}
+
+KeptFile::KeptFile(const fs::path& path) : path_(path), inode_(inode_of(path))
+{
+    for (;;) {
+        const fs::path old = old_of(path);
+        switch (link_to_free(path, old)) {
+            case Renaming::done: try { sync_folder(old);
+                } catch (...) {
+                    std::error_code ignored;
+                    fs::remove(old, ignored);
+                    throw;
+                }
+                old_ = old;
+                return;
+            case Renaming::name_taken: break;  // by another process, just now
+            case Renaming::gone: return;
+        }
+    }
+}
+
+KeptFile::~KeptFile()
+{
+    std::error_code ignored;
+    if (old_ && !is_replaced()) fs::remove(*old_, ignored);
+}
+
+bool KeptFile::is_replaced() const
+{
+    return inode_of(path_) != inode_;
 }
 
 // ---- A save in progress ---------------------------------------------------------------------------------------------
@@ -151,6 +204,20 @@ bool Work::Saving::is_foreign(Part part) const
     }
 }
 
+namespace {
+
+/// `old`: where the file of another program is now; null: there was none.
+void note_kept(std::vector<Notice>& notices, Part part, const fs::path& file, const std::optional<fs::path>& old)
+{
+    if (!old) return;
+    notices.push_back(
+        {sentence(file.string(), ": was written by another program; expected the ", name_of(part),
+                  " as this one knows it; it is kept as ", old->string(), ", and what is saved is this program's"),
+         true});
+}
+
+}  // namespace
+
 void Work::Saving::write(Part part, const Progress& progress)
 {
     const fs::path& file = file_of(files_, part);
@@ -158,25 +225,37 @@ void Work::Saving::write(Part part, const Progress& progress)
     if (hold_ && !hold_->is_kept())
         throw JournalTaken(sentence(file.string(), ": is not saved, since another process has taken the journal ",
                                     files_.journal.string(), " over; expected this process to be its only writer"));
-    if (is_foreign(part))
-        if (const std::optional<fs::path> old = set_aside(file)) {
-            if (part == Part::mask) files_.mask_before = *old;
-            saved_.notices.push_back({sentence(file.string(), ": was written by another program; expected the ",
-                                               name_of(part), " as this one knows it; it is kept as ", old->string(),
-                                               ", and what is saved is this program's"),
-                                      true});
-        }
-    // If false, the file (if any) is from an interrupted save, or from a program that wrote the same content.
+    // What another program wrote keeps its name until what is saved takes that: a file by a second name, a folder since
+    // names are exchanged. Only a folder where a file belongs, or the reverse, is moved first.
+    const bool is_foreign_now = is_foreign(part);
+    const uint64_t inode = inode_of(file);
+    std::optional<KeptFile> kept_file;
+    if (is_foreign_now) {
+        std::error_code ignored;
+        const bool is_folder = fs::is_directory(file, ignored);
+        std::optional<fs::path> old;
+        if (is_folder != is_saved_as_folder(part, file))
+            old = set_aside(file);
+        else if (!is_folder)
+            kept_file.emplace(file);
+        note_kept(saved_.notices, part, file, old);
+        if (part == Part::mask) files_.mask_before = old.value_or(file);  // its header is read before it is replaced
+    }
+    // If not excluded, the file (if any) is from an interrupted save, or from a program that wrote the same content.
     const bool is_last_save = seen.digest && seen.digest == digest_of(known_, part);
+    const Foreign foreign = is_foreign_now ? Foreign::replaced : is_last_save ? Foreign::excluded : Foreign::kept;
     try {
-        std::string kept = write_part(part, document_, files_, looks_, journal_.get(),
-                                      is_last_save ? Foreign::excluded : Foreign::kept, progress);
+        std::string kept = write_part(part, document_, files_, looks_, journal_.get(), foreign, progress);
         if (!kept.empty()) saved_.notices.push_back({std::move(kept), true});
     } catch (const Error&) {
+        const bool is_untouched = inode != 0 && inode_of(file) == inode;
+        if (is_foreign_now && is_untouched) throw;  // it is still the other program's
+        if (kept_file) note_kept(saved_.notices, part, file, kept_file->old());
         // Even a partial write is this process's. An untouched file is not read again, which could take long.
         if (const std::optional<FileStamp> stamp = stamp_of(file); !stamp || stamp != seen.stamp) note_file(file, seen);
         throw;
     }
+    if (kept_file) note_kept(saved_.notices, part, file, kept_file->old());
     note_file(file, seen);
     digest_of(known_, part) = seen.digest;
     saved_.files.push_back(file);

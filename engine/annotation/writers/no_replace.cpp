@@ -6,7 +6,10 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <span>
+#include <vector>
 
+#include "engine/base/atomic_writer.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 
@@ -47,6 +50,23 @@ int rename_without_replacing(const fs::path& from, const fs::path& to)
     return ::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0 ? 0 : errno;
 }
 
+/// Copies a file to `to`, a name of this process.
+void copy_to_own(const fs::path& from, const fs::path& to)
+{
+    const FileDescriptor input(::open(from.c_str(), O_RDONLY | O_CLOEXEC));
+    if (!input) fail(from.string(), ": cannot be read: ", reason_of(errno));
+    AtomicWriter writer(to);
+    std::vector<std::byte> piece(size_t{1} << 20);
+    for (;;) {
+        const ssize_t count = ::read(input.number(), piece.data(), piece.size());
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) fail(from.string(), ": cannot be read: ", reason_of(errno));
+        if (count == 0) break;
+        writer.append(std::span(piece).first(size_t(count)));
+    }
+    writer.commit();
+}
+
 }  // namespace
 
 Renaming move_to_free(const fs::path& from, const fs::path& to)
@@ -63,6 +83,23 @@ Renaming move_to_free(const fs::path& from, const fs::path& to)
     if (std::rename(from.c_str(), to.c_str()) == 0) return Renaming::done;
     if (errno == ENOTEMPTY || errno == ENOTDIR) return Renaming::name_taken;
     return after_failure(from, to, errno);
+}
+
+Renaming link_to_free(const fs::path& from, const fs::path& to)
+{
+    const fs::path file = link_target(from);
+    const int error = ::link(file.c_str(), to.c_str()) == 0 ? 0 : errno;
+    if (error == 0) return Renaming::done;
+    if (!lacks_call(error) && error != EXDEV) return after_failure(from, to, error);
+    const FileDescriptor reserved(::open(to.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    if (!reserved) return after_failure(from, to, errno);
+    try {
+        copy_to_own(file, to);
+    } catch (...) {
+        ::unlink(to.c_str());
+        throw;
+    }
+    return Renaming::done;
 }
 
 Renaming put_at_free(const fs::path& own, const fs::path& to)

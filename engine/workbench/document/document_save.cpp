@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "engine/annotation/work/part_writer.h"
 #include "engine/base/atomic_file.h"
 #include "engine/base/file.h"
 #include "engine/session/annotation_files.h"
@@ -104,16 +105,18 @@ void Document::Saving::write_names()
     write_file_atomically(names_path_, std::as_bytes(std::span(text_)));
 }
 
-/// Writes the session. Moves aside a file that another program wrote there meanwhile; the notice names the moved file.
+/// Writes the session. Keeps a file that another program wrote there meanwhile under another name, in the notice.
 void Document::Saving::write_session()
 {
+    std::optional<KeptFile> kept;
     if (const std::optional<std::string> there = text_of_session(session_path_); there && there != text_there_)
-        if (const std::optional<std::filesystem::path> old = set_aside(session_path_))
-            notice_ = {
-                sentence(session_path_.string(), ": was written by another program since it was opened; it is kept as ",
-                         old->string(), ", and what is saved is this window's"),
-                true};
+        kept.emplace(session_path_);
     write_file_atomically(session_path_, std::as_bytes(std::span(text_)));
+    if (kept && kept->old())
+        notice_ = {
+            sentence(session_path_.string(), ": was written by another program since it was opened; it is kept as ",
+                     kept->old()->string(), ", and what is saved is this window's"),
+            true};
     has_session_ = true;
 }
 
