@@ -37,7 +37,8 @@ IS_VALIDATED = IS_SLOW or Path(sys.argv[0]).name in VALIDATED.values()
 # The environment of every start. Hazards are validated between submissions, too. All files share the shaders that Mesa
 # compiled, while the program's own cache is new for each file.
 BUILD = Path(SHVR).resolve().parent
-ENVIRONMENT = {"VK_LAYER_ENABLES": "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT",
+ENVIRONMENT = {"no_proxy": "127.0.0.1,localhost",  # the servers of tests
+               "VK_LAYER_ENABLES": "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT",
                "VK_ADD_LAYER_PATH": str(BUILD / "layers"), "MESA_SHADER_CACHE_DIR": str(BUILD / "cache"),
                **os.environ, "SHVR_VALIDATION": "1" if IS_VALIDATED else "", "LC_ALL": "C",
                "XDG_CONFIG_HOME": CONFIGURATION.name, "XDG_CACHE_HOME": CONFIGURATION.name}
