@@ -199,7 +199,9 @@ set_property(TEST cli/stability APPEND PROPERTY ENVIRONMENT SHVR_STABILITY_CASES
 
 # Builds and tries the program on another release, in a root below build/ (tools/test_in_release).
 shvr_test(release trixie_slow 1200 tools/test_in_release trixie)
-set_tests_properties(release/trixie_slow PROPERTIES RUN_SERIAL ON)
+# Builds the packages, installs, uses and purges them in a bare root; the same with the archive (tools/package).
+shvr_test(release package_slow 1200 tools/package/test_installed --build)
+set_tests_properties(release/trixie_slow release/package_slow PROPERTIES RUN_SERIAL ON)
 
 shvr_test(style layers 60 ${Python3_EXECUTABLE} tools/check_layers.py)
 shvr_test(style layers_self_test 60 ${Python3_EXECUTABLE} tools/check_layers.py --self-test)

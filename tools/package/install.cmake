@@ -13,8 +13,7 @@ install(FILES tools/package/shvr.desktop DESTINATION ${shared}/applications)
 install(FILES tools/package/shvr.metainfo.xml DESTINATION ${shared}/metainfo)
 install(FILES tools/package/shvr.mime.xml DESTINATION ${shared}/mime/packages RENAME shvr.xml)
 install(FILES tools/package/shvr.svg DESTINATION ${shared}/icons/hicolor/scalable/apps)
-install(FILES README.md tools/package/CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(FILES tools/package/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES README.md tools/package/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 # Manual pages and completions, written by the program itself, and the icon's sizes. Only releases need them.
 if(CMAKE_BUILD_TYPE STREQUAL "Release")
@@ -26,8 +25,9 @@ if(CMAKE_BUILD_TYPE STREQUAL "Release")
         COMMAND sh -c "gzip -9n share/man/man1/*.1"
         COMMAND ${CMAKE_COMMAND} -E make_directory ${made}/share/doc/shvr
         COMMAND sh -c "gzip -9nc ${CMAKE_SOURCE_DIR}/tools/package/changelog > share/doc/shvr/changelog.Debian.gz"
+        COMMAND sh -c "gzip -9nc ${CMAKE_SOURCE_DIR}/tools/package/CHANGELOG.md > share/doc/shvr/changelog.gz"
         COMMAND ${CMAKE_COMMAND} -E touch ${made}/manual.done
-        DEPENDS shvr tools/package/changelog WORKING_DIRECTORY ${made} VERBATIM
+        DEPENDS shvr tools/package/changelog tools/package/CHANGELOG.md WORKING_DIRECTORY ${made} VERBATIM
         COMMENT "Writing manual pages and completions")
     set(products ${made}/manual.done)
     find_program(RSVG_CONVERT rsvg-convert)
@@ -80,7 +80,8 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "mesa-vulkan-drivers, fonts-dejavu-core")
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "graphviz, ffmpeg, xclip | wl-clipboard, python3-skimage, fonts-droid-fallback")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS
+    "graphviz, ffmpeg, xclip | wl-clipboard, python3-skimage, xdg-utils, fonts-droid-fallback")
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
-set(CPACK_DEBIAN_DEBUGINFO_PACKAGE ON)
+set(CPACK_STRIP_FILES ON)
 include(CPack)
