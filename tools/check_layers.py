@@ -74,8 +74,8 @@ MAY_INCLUDE = {
     "engine/workbench/curves": "engine/look engine/session",
     "engine/workbench/touch": "engine/base engine/look engine/annotation/trace engine/annotation/work engine/session "
     "engine/live haptics haptics/devices",
-    "engine/workbench/models": "engine/base engine/volume engine/annotation/work engine/session engine/jobs engine/live "
-    "haptics haptics/devices engine/workbench/appearance engine/workbench/touch",
+    "engine/workbench/models": "engine/base engine/volume engine/annotation engine/annotation/work engine/session "
+    "engine/jobs engine/live haptics haptics/devices engine/workbench/appearance engine/workbench/touch",
     "engine/workbench/actions": "engine/base engine/annotation/operations engine/annotation/script engine/session engine/tasks engine/workbench/models",
     "engine/workbench/lists": "engine/base engine/look engine/annotation/trace engine/session engine/live "
     "engine/workbench/models engine/workbench/actions",
@@ -85,7 +85,8 @@ MAY_INCLUDE = {
     "engine/workbench/actions",
     "engine/workbench/bindings": "engine/base engine/session engine/workbench/models engine/workbench/actions "
     "engine/workbench/sight engine/workbench/edits engine/workbench/appearance",
-    "engine/workbench/words": "engine/annotation/trace engine/annotation/work engine/session engine/workbench/bindings",
+    "engine/workbench/words": "engine/base engine/annotation/trace engine/annotation/work engine/session "
+    "engine/workbench/models engine/workbench/bindings",
     "engine/workbench/document": "engine/base engine/remote engine/annotation/trace engine/annotation/work engine/session engine/jobs "
     "engine/picture engine/live haptics engine/workbench/touch engine/workbench/models engine/workbench/actions "
     "engine/workbench/sight",

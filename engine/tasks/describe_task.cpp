@@ -1,5 +1,6 @@
 #include "engine/tasks/describe_task.h"
 
+#include "engine/annotation/files/stated_content.h"
 #include "engine/remote/address.h"
 
 namespace shvr {
@@ -55,6 +56,10 @@ DescribeResult run(const DescribeTask& task, ProgressReporter& reporter)
                           .losses = std::move(opened.losses)};
     for (std::string& removed : opened.removed) result.warnings.push_back(std::move(removed));
     for (const std::string& warning : result.info.warnings) result.warnings.push_back(warning);
+    const std::string labels =
+        is_bare && gaps.empty() ? labels_in_words(*opened.source, opened.statistics) : std::string();
+    if (!labels.empty() && !stated_content(task.input))
+        result.warnings.push_back("looks like a label image, not like a scan: " + labels);
     if (!gaps.empty()) result.warnings.push_back(gaps.in_words() + " and are left out of every number");
     return result;
 }

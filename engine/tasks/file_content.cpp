@@ -151,4 +151,11 @@ WhatItIs what_annotation_is(const fs::path& path, const VolumeInfo& open)
         sentence(path.string(), ": is ", name_of_opened(*found.content), "; expected ", LOADED, "; Open opens it"));
 }
 
+std::string why_labels(const fs::path& path, const VolumeSource& source, const VolumeStatistics& statistics)
+{
+    if (!session_file_of(path).empty() || source.info().format == "procedural") return {};
+    if (stated_content(path) == StatedContent::mask) return "it states that it is a mask";
+    return labels_in_words(source, statistics);
+}
+
 }  // namespace shvr

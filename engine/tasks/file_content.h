@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "engine/volume/volume.h"
+#include "engine/volume/source.h"
 
 namespace shvr {
 
@@ -32,5 +32,11 @@ WhatItIs what_is(const std::filesystem::path& path, const VolumeInfo* open);
 /// Determines the content of a file that is to be loaded into the open volume: never a volume, session, project or
 /// picture. Refuses a volume of another size, stating both sizes; a volume of unsigned integers is a mask.
 WhatItIs what_annotation_is(const std::filesystem::path& path, const VolumeInfo& open);
+
+/// Returns why a volume without a session looks like a label image, as a part of a sentence: "it states that it is a
+/// mask". Empty if it does not, or if it has a session or is a project: then it is about a scan, or the user knows
+/// better.
+std::string why_labels(const std::filesystem::path& path, const VolumeSource& source,
+                       const VolumeStatistics& statistics);
 
 }  // namespace shvr

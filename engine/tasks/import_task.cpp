@@ -4,6 +4,7 @@
 #include <iomanip>
 #include <utility>
 
+#include "engine/annotation/files/stated_content.h"
 #include "engine/annotation/writers/hold.h"
 #include "engine/base/text.h"
 #include "engine/remote/address.h"
@@ -52,6 +53,21 @@ void refuse_own_source(const ImportTask& task)
         if (path == path.parent_path()) return;
         error.clear();  // no project exists there yet
     }
+}
+
+/// Warns if the volume looks like annotation of a scan. The project knows its statistics, so scans are not read again.
+void warn_of_labels(const ImportTask& task, const Gaps& gaps, ImportReport& report)
+{
+    if (task.labels || !gaps.empty() || stated_content(task.volume)) return;  // a reader warns of what is stated
+    const std::unique_ptr<VolumeSource> project = open_volume(report.project);
+    const std::optional<VolumeStatistics> statistics = project->statistics();
+    const std::string labels = statistics ? labels_in_words(*project, *statistics) : std::string();
+    if (labels.empty()) return;
+    report.warnings.push_back(
+        sentence(task.volume.string(), ": looks like a label image, not like a scan: ", labels,
+                 "; to load it as annotation, open its scan in the window, then File, Load annotation; to keep it as a "
+                 "volume of labels, import it with ",
+                 option_name(task.names, "labels")));
 }
 
 /// Reports progress in two stages if voxels are reversed, since their range is found first; otherwise in one.
@@ -209,6 +225,7 @@ ImportResult run(const ImportTask& task, ProgressReporter& reporter)
         throw Stopped(stopped.what());
     }
     result.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+    warn_of_labels(task, gaps, result.report);
     const VolumeInfo& info = result.report.info;
     result.megabytes_per_second = double(voxel_count(info)) * double(bytes_of(info.type)) / result.seconds / 1e6;
     return result;

@@ -180,6 +180,20 @@ class Import(CliTest):
         warnings = self.check_json("import", self.project(), self.folder / "again")["warnings"]
         self.assertIn("--labels", " ".join(warnings))
 
+    # Kind (Masks): a label image of another program, imported as a scan
+    def test_a_label_image_that_states_nothing_is_told_of(self):
+        def ball(x, y, z):
+            return (x - 8) ** 2 + (y - 8) ** 2 + (z - 8) ** 2 < 30
+        labels = Volume((16, 16, 16), [255 * ball(x, y, z) for z in range(16) for y in range(16) for x in range(16)])
+        header = labels.write(self.folder, "labels")
+        says = "looks like a label image, not like a scan: its voxels have the values 0 and 255 only"
+        self.assertIn(f"warning: {header}: {says}; to load it as annotation, open its scan in the window",
+                      self.check("import", header, self.project()).stderr)
+        self.assertIn(says, "\n".join(self.check_json("info", header)["warnings"]))
+        self.assertNotIn("looks like", self.check("import", header, self.folder / "labelled", "--labels").stderr)
+        scan = Volume.noise((16, 16, 16), seed=1).write(self.folder, "scan")
+        self.assertNotIn("looks like", self.check("import", scan, self.folder / "scanned").stderr)
+
     def test_what_would_make_new_numbers_of_labels_is_refused(self):
         header = Volume.noise((9, 8, 7), seed=1).write(self.folder)
         for option in (["--blur", "1"], ["--reverse"], ["--downscale", "2"]):

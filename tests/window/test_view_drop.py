@@ -12,6 +12,8 @@ KEPT = {"note": "Kept by hand.", "extends": False,
 
 
 class Drop(Seen):
+    PREVIEW = "Load annotation?"
+
     def drop(self, *paths):
         window = int(self.window_named("SHVR"))
         source = Source(self.display.name, window)
@@ -91,12 +93,20 @@ class Drop(Seen):
         load(small)
         self.see("Error: ", "Status")
         load(mask)
+        self.see("4096 voxels change their group.", self.PREVIEW)
+        self.see("+4096", self.PREVIEW)
+        self.click_on("Cancel", self.PREVIEW)
+        self.see_no_more("Cancel", self.PREVIEW)
+        load(mask)
+        self.see("+4096", self.PREVIEW)
+        self.press("Enter")
         self.told("mask.nrrd is taken")
         self.press("Ctrl+Z")
         self.see("Undone", "Status")
         self.drop(mask)
         self.click_on("Load as the mask", "Scan or annotation?")
         self.see_no_more("Load as the mask")
+        self.click_on("Load", self.PREVIEW)
         self.told("mask.nrrd is taken")
         self.drop(mask)
         self.see("Open as another scan", "Scan or annotation?")
@@ -107,6 +117,23 @@ class Drop(Seen):
         said = "\n".join(report["messages"])
         self.assertIn("is a volume of 8 16 16 voxels; expected annotation of 16 16 16 voxels", said)
         self.assertNotIn("Opened " + str(mask), said)
+
+    def test_a_label_image_opened_as_a_scan_is_told_of_and_loaded_into_its_scan(self):
+        session = self.write_ball(volume={"procedural": "sphere", "size": [16, 16, 16]})
+        labels = self.folder / "labels.nrrd"
+        labels.write_bytes(b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 16 16 16\nencoding: raw\n\n" +
+                           b"\0" * 2048 + b"\2" * 2048)
+        self.view(labels, preferences={"hints_seen": 3})
+        self.see("labels.nrrd looks like a label image, not like a scan", "Labels")
+        self.click_on("Open its scan...", "Labels")
+        self.see("Cancel", "Open the scan of a label image")
+        self.do("key", "ctrl+a", "type", "--delay", 20, session, pause_s=0)
+        self.see(str(session), "Open the scan of a label image")
+        self.press("Enter")
+        self.told("labels.nrrd is taken")
+        self.see_no_more("Open its scan...")
+        report = self.finish()
+        self.assertEqual(report["voxels_in_group"], {"2": 2048})
 
     def test_the_menu_takes_what_could_be_dropped(self):
         self.open_scan(self.write_ball(), preferences={"hints_seen": 3})
@@ -121,6 +148,8 @@ class Drop(Seen):
         self.see(f"{self.folder / 'gone.json'}: there is no such file", "Load annotation")
         self.do("key", "ctrl+a", "type", "--delay", 20, curve, pause_s=0)
         self.see(str(curve), "Load annotation")
+        self.press("Enter")
+        self.see("The transfer function would be replaced.", self.PREVIEW)
         self.press("Enter")
         self.told(f"{curve.name} is taken")
         self.see_no_more("Cancel", "Load annotation")

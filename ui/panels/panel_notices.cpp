@@ -64,6 +64,31 @@ float read_only_banner(const Model& model, const glm::vec2& begin, float width, 
     return height;
 }
 
+/// Says that the open file looks like annotation, and offers to load it as such. Returns its height.
+float labels_banner(const Model& model, const glm::vec2& begin, float width, Actions& actions)
+{
+    ImGui::SetNextWindowPos({begin.x, begin.y});
+    ImGui::SetNextWindowSize({std::max(width, 1.0f), 0.0f});
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, color_of(ColorRole::notice));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0.0f);
+    ImGui::Begin("Labels", nullptr, BANNER);
+    if (ImGui::Button("Open its scan...")) ask_for_scan_of_labels(model);
+    ImGui::SameLine();
+    if (ImGui::Button("Dismiss")) actions.push_back(DismissNotices{});
+    const std::string_view why = model.looks_like_labels;
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::Text(
+        "%s looks like a label image, not like a scan: %.*s. Open the scan that it belongs to, and it is loaded "
+        "there as the mask.",
+        model.session.volume_path.filename().c_str(), int(why.size()), why.data());
+    ImGui::PopTextWrapPos();
+    const float height = ImGui::GetWindowHeight();
+    ImGui::End();
+    ImGui::PopStyleVar();
+    ImGui::PopStyleColor();
+    return height;
+}
+
 void question_of_belief(const Model& model, Actions& actions)
 {
     if (model.disputes.empty()) return;
@@ -84,7 +109,7 @@ void question_of_belief(const Model& model, Actions& actions)
     ImGui::EndPopup();
 }
 
-/// Asks how a file of the open scan's size is to be used: as the mask, as density offsets, or as another scan.
+/// Asks how a file that may be annotation is to be used: as the mask, as density offsets, or as another scan.
 void question_of_use(const Model& model, Actions& actions)
 {
     if (!model.unclear_file) return;
@@ -94,14 +119,17 @@ void question_of_use(const Model& model, Actions& actions)
     ImGui::SetNextWindowSize({40.0f * ImGui::GetFontSize(), 0.0f});
     if (!ImGui::BeginPopupModal(UNCLEAR, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
     ImGui::PushTextWrapPos(0.0f);
-    ImGui::Text("%s has the size of the open scan, and does not state what it is.", file.path.c_str());
+    ImGui::Text("%s %s.", file.path.c_str(), file.why.c_str());
     ImGui::PopTextWrapPos();
     std::optional<Action> chosen;
     const auto button = [&](const char* name, FileUse use) {
-        if (ImGui::Button(name)) chosen = TakeFile{file.path, file.beside, use};
+        if (!ImGui::Button(name)) return;
+        // Alone, annotation is previewed; with other files, everything is taken at once.
+        const bool is_previewed = use != FileUse::scan && file.beside.empty();
+        chosen = is_previewed ? Action(PreviewLoad{file.path, use}) : Action(TakeFile{file.path, file.beside, use});
     };
     button("Load as the mask", FileUse::mask);
-    button("Load as density offsets", FileUse::offsets);
+    if (file.may_be_offsets) button("Load as density offsets", FileUse::offsets);
     if (file.may_be_scan) button("Open as another scan", FileUse::scan);
     if (ImGui::Button("Cancel")) chosen = DismissUnclearFile{};
     if (chosen) {
@@ -117,6 +145,7 @@ float notices(const Model& model, const glm::vec2& begin, float width, Actions& 
 {
     float top = begin.y;
     if (!model.holder.empty() || !model.outside.empty()) top += read_only_banner(model, begin, width, actions);
+    if (!model.looks_like_labels.empty()) top += labels_banner(model, {begin.x, top}, width, actions);
     if (!model.recovered.empty()) top += recovered_banner(model, {begin.x, top}, width, actions);
     question_of_belief(model, actions);
     question_of_use(model, actions);

@@ -93,6 +93,10 @@ bool choosers_have_keys();
 bool choosers_are_busy();
 /// Shows the dialog for saving under another name, from the next frame on.
 void ask_for_name(const Model& model);
+/// Asks for the scan to which the open label image belongs, opens that, and loads the label image into it.
+void ask_for_scan_of_labels(const Model& model);
+/// States what loading a file would change, and asks whether to load it.
+void load_preview_dialog(const Model& model, Actions& actions);
 /// Shows the dialog that asks for a file with annotation or a transfer function, from the next frame on.
 void ask_what_to_take(const Model& model);
 void name_and_take_dialogs(const Model& model, Actions& actions);

@@ -1,8 +1,13 @@
 #pragma once
-// Distinguishes annotation from scans by the metadata of a voxel file. Any thread may call it.
+// Tells annotation from scans: by what a file states, or by what its voxels look like.
+//
+// Any thread may call these.
 
 #include <filesystem>
 #include <optional>
+#include <string>
+
+#include "engine/volume/source.h"
 
 namespace shvr {
 
@@ -12,5 +17,11 @@ enum class StatedContent { mask, offsets };
 /// offsets exported as NRRD or TIFF. Null if the file cannot be read or does not state its content, as TIFFs of other
 /// programs.
 std::optional<StatedContent> stated_content(const std::filesystem::path& path);
+
+/// Returns "its voxels have the values 0 to 3 only" if the volume looks like a label image that a mask can hold: whole
+/// numbers from 0 to 255, at most 64 different ones, and hardly any two labelled neighbours differ, unlike intensities.
+/// Otherwise empty. Reads voxels only if the statistics allow it, and stops at the 65th value; volumes too large to be
+/// measured are sampled.
+std::string labels_in_words(const VolumeSource& source, const VolumeStatistics& statistics);
 
 }  // namespace shvr

@@ -76,6 +76,13 @@ struct LoadAnnotation {
     FileUse what = FileUse::by_contents;
 };
 
+/// Reads annotation or a transfer function, and states what loading it would change (Model::load_preview); loads
+/// nothing. A LoadAnnotation of the same file then loads what was read.
+struct PreviewLoad {
+    std::filesystem::path path;  ///< empty: ends the preview
+    FileUse what = FileUse::by_contents;
+};
+
 /// Dismisses the question about a dropped file; the file is not used.
 struct DismissUnclearFile {};
 
@@ -201,6 +208,16 @@ inline constexpr auto WORK_ACTIONS = std::tuple{
         [](const auto&, const LoadAnnotation& action) -> std::string {
             return action.what == FileUse::scan ? "a scan is opened, not loaded" : "";
         }),
+    row<PreviewLoad, FileTaker>(
+        {"preview_load", "Preview annotation", WORK_GROUP,
+         "states what loading annotation or a transfer function would change, and loads nothing"},
+        [](auto& f, PreviewLoad& a) {
+            f.path("path", a.path, {});
+            f.choice("what", a.what, {"what the file is, if its contents do not state it"});
+        },
+        [](const auto&, const PreviewLoad& action) -> std::string {
+            return action.what == FileUse::scan ? "a scan is opened, not loaded" : "";
+        }),
     row<DismissUnclearFile, FileTaker>({"dismiss_unclear_file", "Cancel", WORK_GROUP,
                                         "leaves a dropped file alone that could be scan or annotation", Needs::nothing},
                                        NO_FIELDS,
@@ -219,10 +236,9 @@ inline constexpr auto WORK_ACTIONS = std::tuple{
                                             : why_not_edited(model);
         }),
     row<DismissNotices, Opener>(
-        {"dismiss_notices", "Dismiss", WORK_GROUP, "marks the notices about recovered and set-aside files as read"},
-        NO_FIELDS,
+        {"dismiss_notices", "Dismiss", WORK_GROUP, "marks the notices shown at opening as read"}, NO_FIELDS,
         [](const auto& model, const DismissNotices&) -> std::string {
-            return model.recovered.empty() ? "there is nothing to be dismissed" : "";
+            return model.recovered.empty() && model.looks_like_labels.empty() ? "there is nothing to be dismissed" : "";
         }),
     row<ForgetRecent, PreferenceKeeper>(
         {"forget_recent", "Forget", WORK_GROUP, "removes a path from the list of recent files; the file stays",

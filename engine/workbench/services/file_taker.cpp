@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <span>
+#include <utility>
 
 #include "engine/base/assets.h"
 #include "engine/base/atomic_file.h"
@@ -10,6 +11,7 @@
 #include "engine/session/label_looks.h"
 #include "engine/session/lasting_settings.h"
 #include "engine/session/session_patch.h"
+#include "engine/workbench/words/load_words.h"
 
 namespace shvr::ui {
 
@@ -44,6 +46,14 @@ bool is_preset(const std::string& text, const std::filesystem::path& path)
     return points.is_array() && points.count() > 0 && points.elements()[0]["at"].exists();
 }
 
+FileUse use_of(FileContent content)
+{
+    return content == FileContent::mask      ? FileUse::mask
+           : content == FileContent::offsets ? FileUse::offsets
+           : content == FileContent::trace   ? FileUse::trace
+                                             : FileUse::look;
+}
+
 }  // namespace
 
 FileTaker::FileTaker(Desk& desk, Others others) : Service(desk), others_(std::move(others)) {}
@@ -52,8 +62,10 @@ void FileTaker::act(const Open& action)
 {
     candidate_.reset();
     unclear_.reset();
+    preview_.reset();
+    previewed_.reset();
     if (action.saves_outside) others_.allow_outside(action.path);
-    others_.begin_open(action.path, lines_of(action.settings), {});
+    others_.begin_open(action.path, lines_of(action.settings), {}, action.settings.empty());
 }
 
 /// Opens a copy: the shipped example must stay unchanged, since its folder may be read-only and others open it, too.
@@ -69,7 +81,7 @@ void FileTaker::act(const OpenExample&)
             std::filesystem::create_directories(own.parent_path());
             write_file_atomically(own, std::as_bytes(std::span(text)));
         }
-        return Jobs::Completion([this, own] { others_.begin_open(own, {}, {}); });
+        return Jobs::Completion([this, own] { others_.begin_open(own, {}, {}, false); });
     });
 }
 
@@ -118,7 +130,7 @@ void FileTaker::act(const TakeFile& action)
     unclear_.reset();
     std::vector<std::filesystem::path> others;
     for (const std::string& line : lines_of(action.beside)) others.emplace_back(line);
-    if (action.use == FileUse::scan) return others_.begin_open(action.path, {}, others);
+    if (action.use == FileUse::scan) return others_.begin_open(action.path, {}, others, false);
     if (action.use != FileUse::by_contents) {
         take_as(action.use, action.path);
         for (const std::filesystem::path& path : others) act(TakeFile{.path = path});
@@ -145,22 +157,6 @@ void FileTaker::act(const TakeFile& action)
     });
 }
 
-/// Never closes the open scan, whatever the file contains, since the user asked for annotation.
-void FileTaker::act(const LoadAnnotation& action)
-{
-    unclear_.reset();
-    if (action.what != FileUse::by_contents) return take_as(action.what, action.path);
-    jobs_.start("looking at " + short_name(action.path),
-                [this, path = action.path, volume = document_->volume()](ProgressReporter&) {
-                    const WhatItIs found = what_annotation_is(path, volume);
-                    return Jobs::Completion([this, path, found] {
-                        if (found.may_be_annotation) return ask_what_it_is({.path = path, .may_be_scan = false});
-                        if (!found.content) fail(found.why_not);
-                        take(*found.content, path);
-                    });
-                });
-}
-
 void FileTaker::act(const DismissUnclearFile&)
 {
     unclear_.reset();
@@ -172,7 +168,7 @@ void FileTaker::ask_what_it_is(UnclearFile file)
     if (options_.is_script)
         fail(file.path.string(), ": could be ", file.may_be_scan ? "a scan, " : "",
              "a mask or density offsets; expected \"what\" or \"use\" to state which");
-    say(file.path.string() + " has the size of the open scan; choose what it is", Weight::done);
+    say(file.path.string() + " " + file.why + "; choose what it is", Weight::done);
     unclear_ = std::move(file);
 }
 
@@ -192,7 +188,7 @@ void FileTaker::take_together(std::vector<std::filesystem::path> paths)
             const bool may_open = found.may_be_annotation || (found.content && is_opened(*found.content));
             (may_open ? opened : others).push_back(path);
         }
-        return Jobs::Completion([this, opened, others, asks = is_unclear && !has_mask] {
+        return Jobs::Completion([this, opened, others, asks = is_unclear && !has_mask, asks_of_labels = !has_mask] {
             if (opened.size() > 1)
                 fail(opened[0].string(), " and ", opened[1].string(),
                      ": each can be opened; expected one scan, session or project at a time, alone or with its mask, "
@@ -202,7 +198,7 @@ void FileTaker::take_together(std::vector<std::filesystem::path> paths)
                 for (const std::filesystem::path& path : others) beside += path.string() + '\n';
                 return ask_what_it_is({.path = opened[0], .beside = beside});
             }
-            if (opened.size() == 1) return others_.begin_open(opened[0], {}, others);
+            if (opened.size() == 1) return others_.begin_open(opened[0], {}, others, asks_of_labels);
             for (const std::filesystem::path& path : others) act(TakeFile{.path = path});
         });
     });
@@ -210,82 +206,177 @@ void FileTaker::take_together(std::vector<std::filesystem::path> paths)
 
 void FileTaker::take(FileContent content, const std::filesystem::path& path)
 {
-    if (is_opened(content)) return others_.begin_open(path, {}, {});
-    take_as(content == FileContent::mask      ? FileUse::mask
-            : content == FileContent::offsets ? FileUse::offsets
-            : content == FileContent::trace   ? FileUse::trace
-                                              : FileUse::look,
-            path);
+    if (is_opened(content)) return others_.begin_open(path, {}, {}, true);
+    take_as(use_of(content), path);
 }
 
-void FileTaker::take_as(FileUse use, const std::filesystem::path& path)
+// ---- What is loaded into the open document --------------------------------------------------------------------------
+
+/// A file that was read on the worker.
+struct FileTaker::ReadFile {
+    std::filesystem::path path;
+    uint64_t opening = 0;        ///< the document that it was read for (Desk::openings)
+    std::optional<Part> part{};  ///< null: a transfer function
+    std::string text{};          ///< contents of a transfer function
+    std::shared_ptr<const shvr::Document> found{};
+    LoadNotes notes{};
+    Groups groups{}, looks{};  ///< groups of the document, and with names and colours that a mask adds
+
+    FileUse use() const
+    {
+        return !part                    ? FileUse::look
+               : *part == Part::mask    ? FileUse::mask
+               : *part == Part::offsets ? FileUse::offsets
+                                        : FileUse::trace;
+    }
+};
+
+/// Never closes the open scan, whatever the file contains, since the user asked for annotation.
+void FileTaker::act(const LoadAnnotation& action)
 {
-    if (!document_) fail(path.string(), ": belongs to a volume; expected that to be open, to take it into");
-    if (use == FileUse::look) return take_transfer_function(path);
-    take_annotation(use == FileUse::mask ? Part::mask : use == FileUse::offsets ? Part::offsets : Part::trace, path);
+    unclear_.reset();
+    preview_.reset();
+    const std::shared_ptr<const ReadFile> read = std::exchange(previewed_, nullptr);
+    const bool is_read = read && read->path == action.path && read->opening == desk_.openings;
+    const bool is_wanted = action.what == FileUse::by_contents || (is_read && read->use() == action.what);
+    if (is_read && is_wanted) return load(*read);
+    if (action.what != FileUse::by_contents) return take_as(action.what, action.path);
+    load_by_contents(action.path, Step::load);
 }
 
-void FileTaker::take_transfer_function(const std::filesystem::path& path)
+void FileTaker::act(const PreviewLoad& action)
 {
-    jobs_.start("reading " + short_name(path), [this, path](ProgressReporter&) {
-        return Jobs::Completion([this, path, text = read_text(path, MAX_JSON_BYTES)] {
-            if (!document_) fail(path.string(), ": belongs to a volume; expected that to be open, to take it into");
-            if (is_preset(text, path)) {
-                Session after = document_->session;
-                const TransferPreset preset = parse_transfer_preset(text, path.stem().string(), path.string());
-                after.transfer_function = transfer_function_of(preset, document_->statistics);
-                others_.take_session(std::move(after));
-            } else {
-                others_.set(Set{patch_of("transfer_function=" + text)});
-            }
-            others_.record_settings();
-            say("The transfer function of " + path.string() + " is taken; undo takes it back");
+    unclear_.reset();
+    preview_.reset();
+    previewed_.reset();
+    if (action.path.empty()) return;
+    if (action.what != FileUse::by_contents) return take_as(action.what, action.path, Step::preview);
+    load_by_contents(action.path, Step::preview);
+}
+
+void FileTaker::load_by_contents(const std::filesystem::path& path, Step step)
+{
+    jobs_.start("looking at " + short_name(path), [this, path, step, volume = document_->volume()](ProgressReporter&) {
+        const WhatItIs found = what_annotation_is(path, volume);
+        return Jobs::Completion([this, path, step, found] {
+            if (found.may_be_annotation) return ask_what_it_is({.path = path, .may_be_scan = false});
+            if (!found.content) fail(found.why_not);
+            take_as(use_of(*found.content), path, step);
         });
     });
 }
 
-/// Reads the annotation on the worker. It becomes one step of the history, together with the names and colours of
-/// groups that a mask states and the session lacks.
-void FileTaker::take_annotation(Part part, const std::filesystem::path& path)
+void FileTaker::take_as(FileUse use, const std::filesystem::path& path, Step step)
+{
+    if (!document_) fail(path.string(), ": belongs to a volume; expected that to be open, to take it into");
+    if (use == FileUse::look) return read_transfer_function(path, step);
+    read_annotation(use == FileUse::mask      ? Part::mask
+                    : use == FileUse::offsets ? Part::offsets
+                                              : Part::trace,
+                    path, step);
+}
+
+void FileTaker::read_transfer_function(const std::filesystem::path& path, Step step)
+{
+    jobs_.start("reading " + short_name(path), [this, path, step, opening = desk_.openings](ProgressReporter&) {
+        const auto read = std::make_shared<ReadFile>(
+            ReadFile{.path = path, .opening = opening, .text = read_text(path, MAX_JSON_BYTES)});
+        return Jobs::Completion([this, read, step] { go_on_with(read, step); });
+    });
+}
+
+void FileTaker::read_annotation(Part part, const std::filesystem::path& path, Step step)
 {
     const VolumeInfo volume = document_->volume();
     WorkFiles files{.volume_hash = document_->session.volume_hash,
                     .is_other_name = work_files(document_->session, volume).is_other_name,
                     .volume = volume};
     (part == Part::mask ? files.mask : part == Part::trace ? files.trace : files.density) = path;
-    const uint64_t opening = desk_.openings;
-    const Groups groups = document_->session.groups;
-    jobs_.start("reading " + short_name(path), [this, part, path, volume, files, opening, groups](ProgressReporter&) {
+    const auto read = std::make_shared<ReadFile>(
+        ReadFile{.path = path, .opening = desk_.openings, .part = part, .groups = document_->session.groups});
+    jobs_.start("reading " + short_name(path), [this, volume, files, read, step](ProgressReporter&) {
         const auto found = std::make_shared<shvr::Document>(
             shvr::Document{.mask = Mask(volume.size), .trace = {}, .density = DensityField(volume.size, volume.type)});
-        const LoadNotes notes = load(part, files, *found);
-        Groups looks = groups;
-        if (part == Part::mask) static_cast<void>(take_label_looks(path, looks));
-        return Jobs::Completion([this, part, path, found, opening, groups, looks, notes] {
-            if (!document_ || desk_.openings != opening)
-                fail(path.string(), ": belongs to a volume that is no longer open");
-            Annotator& annotator = document_->annotator;
-            if (annotator.stroke_is_running()) fail(path.string(), ": a stroke is being painted; drop it again");
-            others_.record_settings();
-            std::vector<Change> changes = changes_between(part, annotator.document(), *found);
-            if (looks != groups && document_->session.groups == groups && !document_->is_script()) {
-                Session after = document_->session;
-                after.groups = looks;
-                const SettingValues before = annotator.work().settings();
-                const auto known = before.find("groups");
-                changes.emplace_back(SettingChange{"groups", known == before.end() ? std::string() : known->second,
-                                                   lasting_settings(after).at("groups")});
-            }
-            const Command* const command =
-                annotator.perform(sentence(name_of(part), " of ", short_name(path)), std::move(changes));
-            if (!command) return say(path.string() + ": its " + name_of(part) + " is already in use");
-            if (part == Part::mask) annotator.work().keep_header_of(path);
-            others_.show_changes(*command);
-            for (const std::string& loss : notes.losses) say(loss, Weight::warning);
-            for (const std::string& remark : notes.remarks) say(remark);
-            say(sentence("The ", name_of(part), " of ", path.string(), " is taken; undo takes it back"));
-        });
+        read->notes = shvr::load(*read->part, files, *found);
+        read->found = found;
+        read->looks = read->groups;
+        if (*read->part == Part::mask) static_cast<void>(take_label_looks(read->path, read->looks));
+        return Jobs::Completion([this, read, step] { go_on_with(read, step); });
     });
+}
+
+void FileTaker::go_on_with(std::shared_ptr<const ReadFile> read, Step step)
+{
+    if (!document_ || desk_.openings != read->opening)
+        fail(read->path.string(), ": belongs to a volume that is no longer open");
+    if (step == Step::preview) return show_preview(std::move(read));
+    load(*read);
+}
+
+/// Returns the changes of annotation that loading makes, without those of the groups' looks.
+std::vector<Change> FileTaker::changes_by(const ReadFile& read) const
+{
+    return changes_between(*read.part, document_->annotator.document(), *read.found);
+}
+
+void FileTaker::show_preview(std::shared_ptr<const ReadFile> read)
+{
+    LoadPreview preview{.path = read->path, .part = read->part};
+    if (read->part) {
+        const std::vector<Change> changes = changes_by(*read);
+        const shvr::Document& present = document_->annotator.document();
+        preview = preview_of(*read->part, present, *read->found, changes);
+        preview.path = read->path;
+        preview.notes = read->notes.losses;
+        preview.notes.insert(preview.notes.end(), read->notes.remarks.begin(), read->notes.remarks.end());
+        if (read->looks != read->groups) preview.notes.emplace_back("its names and colours of groups are taken, too");
+    } else {
+        preview.changes = "The transfer function would be replaced.";
+    }
+    preview_ = std::move(preview);
+    previewed_ = std::move(read);
+}
+
+void FileTaker::load_transfer_function(const ReadFile& read)
+{
+    if (is_preset(read.text, read.path)) {
+        Session after = document_->session;
+        const TransferPreset preset = parse_transfer_preset(read.text, read.path.stem().string(), read.path.string());
+        after.transfer_function = transfer_function_of(preset, document_->statistics);
+        others_.take_session(std::move(after));
+    } else {
+        others_.set(Set{patch_of("transfer_function=" + read.text)});
+    }
+    others_.record_settings();
+    say("The transfer function of " + read.path.string() + " is taken; undo takes it back");
+}
+
+/// What was read becomes one step of the history, together with the names and colours of groups that a mask states and
+/// the session lacks.
+void FileTaker::load(const ReadFile& read)
+{
+    if (!read.part) return load_transfer_function(read);
+    const std::string path = read.path.string();
+    const char* const name = name_of(*read.part);
+    Annotator& annotator = document_->annotator;
+    if (annotator.stroke_is_running()) fail(path, ": a stroke is being painted; load it again");
+    others_.record_settings();
+    std::vector<Change> changes = changes_by(read);
+    if (read.looks != read.groups && document_->session.groups == read.groups && !document_->is_script()) {
+        Session after = document_->session;
+        after.groups = read.looks;
+        const SettingValues before = annotator.work().settings();
+        const auto known = before.find("groups");
+        changes.emplace_back(SettingChange{"groups", known == before.end() ? std::string() : known->second,
+                                           lasting_settings(after).at("groups")});
+    }
+    const Command* const command = annotator.perform(sentence(name, " of ", short_name(path)), std::move(changes));
+    if (!command) return say(path + ": its " + name + " is already in use");
+    if (*read.part == Part::mask) annotator.work().keep_header_of(read.path);
+    others_.show_changes(*command);
+    for (const std::string& loss : read.notes.losses) say(loss, Weight::warning);
+    for (const std::string& remark : read.notes.remarks) say(remark);
+    say(sentence("The ", name, " of ", path, " is taken; undo takes it back"));
 }
 
 }  // namespace shvr::ui

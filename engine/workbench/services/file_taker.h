@@ -12,8 +12,8 @@ public:
     struct Others {
         Call<void(const std::filesystem::path&)> allow_outside;
         Call<void(const std::filesystem::path& path, const std::vector<std::string>& settings,
-                  std::vector<std::filesystem::path> taken_into_it)>
-            begin_open;
+                  std::vector<std::filesystem::path> taken_into_it, bool asks)>
+            begin_open;  ///< `asks`: asks first if the file looks like a label image and another is open
         Call<void(Session)> take_session;
         Call<void(const Set&)> set;
         Call<void()> record_settings;
@@ -25,24 +25,38 @@ public:
     void act(const LookAtFile& action);
     void act(const TakeFile& action);
     void act(const LoadAnnotation& action);
+    void act(const PreviewLoad& action);
     void act(const DismissUnclearFile& action);
+    /// Shows the question what a file is; fails in a script, which cannot be asked.
+    void ask_what_it_is(UnclearFile file);
 
     CandidateModel model() const
     {
-        return {.candidate = candidate_.get(), .unclear_file = unclear_ ? &*unclear_ : nullptr};
+        return {.candidate = candidate_.get(),
+                .unclear_file = unclear_ ? &*unclear_ : nullptr,
+                .load_preview = preview_ ? &*preview_ : nullptr};
     }
 
 private:
+    enum class Step { preview, load };
+    struct ReadFile;
     void take(FileContent content, const std::filesystem::path& path);
-    void take_as(FileUse use, const std::filesystem::path& path);
-    void take_transfer_function(const std::filesystem::path& path);
+    void take_as(FileUse use, const std::filesystem::path& path, Step step = Step::load);
+    void load_by_contents(const std::filesystem::path& path, Step step);
+    void read_transfer_function(const std::filesystem::path& path, Step step);
+    void read_annotation(Part part, const std::filesystem::path& path, Step step);
     void take_together(std::vector<std::filesystem::path> paths);
-    void ask_what_it_is(UnclearFile file);
-    void take_annotation(Part part, const std::filesystem::path& path);
+    void go_on_with(std::shared_ptr<const ReadFile> read, Step step);
+    std::vector<Change> changes_by(const ReadFile& read) const;
+    void show_preview(std::shared_ptr<const ReadFile> read);
+    void load(const ReadFile& read);
+    void load_transfer_function(const ReadFile& read);
 
     const Others others_;
     std::unique_ptr<Candidate> candidate_;
     std::optional<UnclearFile> unclear_;
+    std::optional<LoadPreview> preview_;
+    std::shared_ptr<const ReadFile> previewed_;  ///< what `preview_` describes
 };
 
 }  // namespace shvr::ui

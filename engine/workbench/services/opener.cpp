@@ -8,6 +8,7 @@
 #include "engine/session/picture_session.h"
 #include "engine/session/session_keys.h"
 #include "engine/session/session_patch.h"
+#include "engine/tasks/file_content.h"
 #include "engine/workbench/services/opening.h"
 #include "engine/workbench/services/saver.h"
 
@@ -45,6 +46,13 @@ std::filesystem::path session_saved_for(const std::filesystem::path& volume)
     return is_of_it ? beside : std::filesystem::path();
 }
 
+std::string lines_with(const std::vector<std::filesystem::path>& paths)
+{
+    std::string lines;
+    for (const std::filesystem::path& path : paths) lines += path.string() + '\n';
+    return lines;
+}
+
 }  // namespace
 
 Opener::Opener(Desk& desk, PreferenceKeeper& keeper, Others others)
@@ -54,9 +62,9 @@ Opener::Opener(Desk& desk, PreferenceKeeper& keeper, Others others)
 Opener::~Opener() = default;
 
 void Opener::begin_open(const std::filesystem::path& path, const std::vector<std::string>& settings,
-                        std::vector<std::filesystem::path> taken_into_it)
+                        std::vector<std::filesystem::path> taken_into_it, bool asks)
 {
-    start({.path = path, .settings = settings, .taken_into_it = std::move(taken_into_it)});
+    start({.path = path, .settings = settings, .asks = asks, .taken_into_it = std::move(taken_into_it)});
 }
 
 void Opener::start(Opening next)
@@ -90,6 +98,12 @@ void Opener::open(const std::filesystem::path& path, const std::vector<std::stri
     if (*failure) std::rethrow_exception(*failure);
 }
 
+struct Opener::ReadResult {
+    Document::Read read;
+    std::optional<Session> pictured{};
+    std::string looks_like_labels{};
+};
+
 /// Starts reading on the worker; called again if the open document changed its journal after the last read began.
 void Opener::read_next()
 {
@@ -107,8 +121,7 @@ void Opener::read_next()
     const std::filesystem::path path = opening.path;
     const bool may_write_outside = options_.saves_outside || allowed_outside_.contains(path);
     const auto read = [path, settings = opening.settings, how, flush, may_write_outside, goes_on = !options_.is_script,
-                       &renderer =
-                           renderer_](ProgressReporter& reporter) -> std::pair<Document::Read, std::optional<Session>> {
+                       &renderer = renderer_](ProgressReporter& reporter) -> ReadResult {
         const std::string name = short_name(path);
         if (flush) flush();
         const OpeningOptions options{.measure = {.progress = reporter.begin("measuring " + name)}};
@@ -122,25 +135,28 @@ void Opener::read_next()
             input = of;
             opened = open_session(input, settings, options);
         }
+        std::string labels = goes_on ? why_labels(input, *opened.source, opened.statistics) : std::string();
         const Session& session = opened.session;
         opened.source = renderer.with_levels(std::move(opened.source), session.render, shows_occlusion(session.light),
                                              reporter.begin("making coarser levels of " + name));
         Work::Opening with_progress = how;
         with_progress.progress = reporter.begin("reading the work on " + name);
         return {Document::read(std::move(opened), input, settings, std::move(with_progress), may_write_outside),
-                std::move(pictured)};
+                std::move(pictured), std::move(labels)};
     };
     opening.number =
         jobs_.start("opening " + short_name(path),
                     [this, read, thrown = opening.thrown](ProgressReporter& reporter) -> Jobs::Completion {
                         try {
-                            auto result = read(reporter);
-                            auto done = std::make_shared<Document::Read>(std::move(result.first));
+                            ReadResult result = read(reporter);
+                            auto done = std::make_shared<Document::Read>(std::move(result.read));
                             static_cast<void>(reporter.begin({}));  // a cancelled job releases its journal here
-                            return [this, thrown, done, pictured = std::move(result.second)] {
+                            return [this, thrown, done, pictured = std::move(result.pictured),
+                                    labels = std::move(result.looks_like_labels)] {
                                 if (!opening_ || opening_->thrown != thrown) return;  // its result is no longer wanted
                                 opening_->read = done;
                                 opening_->pictured = pictured;
+                                opening_->looks_like_labels = labels;
                             };
                         } catch (...) {
                             *thrown = std::current_exception();
@@ -154,7 +170,7 @@ void Opener::advance()
     if (!opening_) return;
     try {
         if (!opening_->scene && !opening_->comes_back) {
-            if (!opening_->read || !is_ready_to_load()) return;
+            if (!opening_->read || asks_what_it_is() || !is_ready_to_load()) return;
             begin_loading();
         }
         if (opening_->scene && opening_->scene->load_on(SLICE_S)) finish();
@@ -163,6 +179,19 @@ void Opener::advance()
     } catch (...) {
         end(std::current_exception());
     }
+}
+
+/// Asks, and ends the opening, if the file looks like annotation of the open document. Returns whether it asks.
+bool Opener::asks_what_it_is()
+{
+    if (!document_ || !opening_->asks || opening_->looks_like_labels.empty()) return false;
+    if (document_->session.volume_path == opening_->read->opened.session.volume_path) return false;  // it is open
+    const std::shared_ptr<Opening> ended = std::exchange(opening_, nullptr);
+    others_.ask_what_it_is({.path = ended->path,
+                            .beside = lines_with(ended->taken_into_it),
+                            .why = "looks like a label image: " + ended->looks_like_labels,
+                            .may_be_offsets = false});
+    return true;
 }
 
 /// Returns whether the open document is saved, and its journal is unchanged since it was read.
@@ -221,9 +250,11 @@ void Opener::finish()
     before.reset();
     away_.reset();
     begin_document(*opening);
+    looks_like_labels_ = document_->has_session_file() ? std::string() : opening->looks_like_labels;
     welcome(opening->path, losses, removed);
     if (opening->pictured) show_picture(*opening->pictured);
-    for (const std::filesystem::path& taken : opening->taken_into_it) others_.take_file(TakeFile{.path = taken});
+    for (const std::filesystem::path& taken : opening->taken_into_it)
+        others_.load_annotation(LoadAnnotation{.path = taken});
 }
 
 /// Shows the previous document again, which was unloaded to make room.
@@ -273,7 +304,9 @@ void Opener::welcome(const std::filesystem::path& path, const std::vector<std::s
     for (const std::string& setting : removed) status += "; " + setting;
     for (const std::string& warning : document_->volume().warnings) status += "; " + warning;
     for (const Notice& notice : document_->messages) status += "; " + notice.text;
-    const bool is_as_left = recovered_.empty() && removed.empty() && !document_->only_looks();
+    if (!looks_like_labels_.empty()) status += "; it looks like a label image: " + looks_like_labels_;
+    const bool is_as_left =
+        recovered_.empty() && removed.empty() && looks_like_labels_.empty() && !document_->only_looks();
     say(status, is_as_left ? Weight::done : Weight::warning);
 }
 
@@ -292,6 +325,7 @@ void Opener::show_picture(const Session& pictured)
 void Opener::act(const DismissNotices&)
 {
     recovered_.clear();
+    looks_like_labels_.clear();
 }
 
 }  // namespace shvr::ui

@@ -34,7 +34,8 @@ public:
         Call<void(const char* by)> drop_screenshot;
         Call<void()> look_again;
         Call<void(const Camera&)> look_from;
-        Call<void(const TakeFile&)> take_file;
+        Call<void(const LoadAnnotation&)> load_annotation;
+        Call<void(UnclearFile)> ask_what_it_is;
         Call<void()> record_settings;
         Call<void()> begin_document;  ///< resets state of the previous document
     };
@@ -45,8 +46,9 @@ public:
     void advance() override;
     bool advances_without_document() const override { return true; }
     /// Starts opening with settings in the form of --set. `taken_into_it`: annotation dropped together with the path.
+    /// `asks`: if the file looks like a label image while another document is open, the user is asked instead.
     void begin_open(const std::filesystem::path& path, const std::vector<std::string>& settings,
-                    std::vector<std::filesystem::path> taken_into_it = {});
+                    std::vector<std::filesystem::path> taken_into_it = {}, bool asks = false);
     /// Allows the session at this path to write outside its folder whenever it is opened in this process.
     void allow_outside(const std::filesystem::path& path) { allowed_outside_.insert(path); }
     /// Opens a path and waits until it is open; saves nothing first. Fails if it cannot be opened.
@@ -74,6 +76,8 @@ public:
 
 private:
     struct Opening;
+    struct ReadResult;
+    bool asks_what_it_is();
     void start(Opening next);
     void read_next();
     bool is_ready_to_load();
@@ -96,6 +100,7 @@ private:
     std::unique_ptr<Document> away_;  ///< the open document without a scene, while the device has room for only one
     std::set<std::filesystem::path> allowed_outside_;
     std::vector<std::string> recovered_;
+    std::string looks_like_labels_;  ///< see OpeningModel
     std::string open_failure_;
     std::filesystem::path failed_path_;
 };

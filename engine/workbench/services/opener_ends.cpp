@@ -40,7 +40,8 @@ OpeningModel Opener::model() const
     return {.recovered = document_ ? std::span<const std::string>(recovered_) : std::span<const std::string>(),
             .opening = opening_name(),
             .open_failure = open_failure_,
-            .failed_path = &failed_path_};
+            .failed_path = &failed_path_,
+            .looks_like_labels = document_ ? std::string_view(looks_like_labels_) : std::string_view()};
 }
 
 // ---- Where it does not come to its end ------------------------------------------------------------------------------

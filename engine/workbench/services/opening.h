@@ -12,6 +12,7 @@ struct Opener::Opening {
     double begun_s = 0.0;
     Work::Opening how{.program = {}};
     bool saves_before = true;
+    bool asks = false;                                   ///< as in begin_open
     bool comes_back = false;                             ///< restores the unloaded document
     std::vector<std::filesystem::path> taken_into_it{};  ///< annotation dropped together with it
 
@@ -20,6 +21,7 @@ struct Opener::Opening {
     std::shared_ptr<std::exception_ptr> thrown{};  ///< exception from the job
     uint64_t journal_bytes = 0;  ///< size of the open document's journal when reading began; used if `read` has it
     std::optional<Session> pictured{};  ///< look of a picture, if the opened file is one
+    std::string looks_like_labels{};    ///< as in OpeningModel
     std::unique_ptr<Scene> scene{};     ///< scene being loaded
 };
 

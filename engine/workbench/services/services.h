@@ -79,11 +79,9 @@ struct Services {
                    .show_changes = [this](const Command& command) { settings.show_changes(command); }}};
     FileTaker taker{desk,
                     {.allow_outside = [this](const std::filesystem::path& path) { opener.allow_outside(path); },
-                     .begin_open =
-                         [this](const std::filesystem::path& path, const std::vector<std::string>& set,
-                                std::vector<std::filesystem::path> taken_into_it) {
-                             opener.begin_open(path, set, std::move(taken_into_it));
-                         },
+                     .begin_open = [this](const std::filesystem::path& path, const std::vector<std::string>& set,
+                                          std::vector<std::filesystem::path> taken_into_it,
+                                          bool asks) { opener.begin_open(path, set, std::move(taken_into_it), asks); },
                      .take_session = [this](Session session) { settings.take_session(std::move(session)); },
                      .set = [this](const Set& change) { settings.act(change); },
                      .record_settings = [this] { settings.record_settings(); },
@@ -98,7 +96,8 @@ struct Services {
                    .drop_screenshot = [this](const char* by) { photographer.drop_large(by); },
                    .look_again = [this] { viewer.look_again(); },
                    .look_from = [this](const Camera& camera) { viewer.look_from(camera); },
-                   .take_file = [this](const TakeFile& file) { taker.act(file); },
+                   .load_annotation = [this](const LoadAnnotation& file) { taker.act(file); },
+                   .ask_what_it_is = [this](UnclearFile file) { taker.ask_what_it_is(std::move(file)); },
                    .record_settings = [this] { settings.record_settings(); },
                    .begin_document =
                        [this] {

@@ -178,6 +178,7 @@ const Row ROWS[] = {
     {R"({"op":"take_file","path":"FOLDER/other.mask"})", "saved, undo, voxels"},
     {R"({"op":"load","path":"FOLDER/other.mask"})", "saved, undo, voxels"},
     {R"({"op":"load","path":"FOLDER/line.txt","what":"trace"})", "saved, trace, undo"},
+    {R"({"op":"preview_load","path":"FOLDER/other.mask"})", "load_preview"},
     {R"({"op":"dismiss_unclear_file"})", "unclear_file", {R"({"op":"take_file","path":"FOLDER/as_large.nrrd"})"}},
     {R"({"op":"forget_recent","path":"FOLDER/scan.json"})", "file preferences.json"},
     {R"({"op":"ask_open","on":true})", "asks"},

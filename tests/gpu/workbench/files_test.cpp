@@ -278,6 +278,108 @@ TEST_CASE_FIXTURE(OnDevice, "a mask is not taken for a scan: it is loaded, refus
     CHECK(desk.bench.document().session.volume_path.filename() == "mask.tif");
 }
 
+// Kind (Masks): a label image of another program, given as a scan
+TEST_CASE_FIXTURE(OnDevice, "a label image that is opened as a scan is asked about, or told of where nothing is open")
+{
+    Desk desk(renderer());
+    const std::string header = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 24 20 16\nencoding: raw\n\n";
+    std::string voxels(24 * 20 * 16, '\0');
+    for (int number = 2000; number < 4000; ++number) voxels[size_t(number)] = number < 2500 ? '\1' : '\4';
+    desk.folder.write("labels.nrrd", header + voxels);
+    const auto scan = [&] { return desk.bench.document().session.volume_path.filename().string(); };
+    const auto perform = [&](const Action& action) {
+        desk.bench.perform(action);
+        settle(desk.bench);
+    };
+    // Nothing is open: it is opened, and its scan is asked for.
+    perform(Open{desk.path("labels.nrrd")});
+    CHECK(scan() == "labels.nrrd");
+    CHECK(desk.bench.model().looks_like_labels == "its voxels have the values 0, 1 and 4 only");
+    CHECK(desk.said("it looks like a label image: its voxels have the values 0, 1 and 4 only"));
+    perform(TakeFile{desk.path("scan.nrrd"), desk.path("labels.nrrd") + "\n", FileUse::scan});
+    CHECK(scan() == "scan.nrrd");
+    CHECK(desk.bench.model().looks_like_labels.empty());
+    CHECK(desk.bench.model().voxels_by_group[1] == 500);
+    CHECK(desk.bench.model().voxels_by_group[4] == 1500);
+    perform(UndoOp{1});
+    CHECK(desk.bench.model().voxels_by_group[4] == 0);
+    // A scan is open: that stays, and the user is asked.
+    perform(Open{desk.path("labels.nrrd")});
+    CHECK(scan() == "scan.nrrd");
+    REQUIRE(desk.bench.model().unclear_file);
+    CHECK(desk.bench.model().unclear_file->why ==
+          "looks like a label image: its voxels have the values 0, 1 and 4 only");
+    perform(TakeFile{.path = desk.path("labels.nrrd"), .use = FileUse::scan});
+    CHECK(scan() == "labels.nrrd");
+    perform(DismissNotices{});
+    CHECK(desk.bench.model().looks_like_labels.empty());
+    // A session says that the user means it as a scan.
+    desk.folder.write("mine.json", R"({"shvr_session": 1, "volume": {"path": "labels.nrrd"}})");
+    perform(Open{desk.path("mine.json")});
+    CHECK(scan() == "labels.nrrd");
+    CHECK(desk.bench.model().unclear_file == nullptr);
+    CHECK(desk.bench.model().looks_like_labels.empty());
+}
+
+TEST_CASE_FIXTURE(OnDevice, "a preview states what loading would change, loads nothing, and loading then does that")
+{
+    Desk desk(renderer());
+    desk.open("scan.nrrd");
+    const auto perform = [&](const Action& action) {
+        desk.bench.perform(action);
+        settle(desk.bench);
+    };
+    std::string first(24 * 20 * 16, '\0'), second = first;
+    for (int number = 1000; number < 3000; ++number) first[size_t(number)] = '\3';
+    for (int number = 2000; number < 4000; ++number) second[size_t(number)] = number < 3500 ? '\3' : '\7';
+    desk.folder.write("first.mask", first);
+    desk.folder.write("second.mask", second);
+    perform(LoadAnnotation{desk.path("first.mask")});
+    REQUIRE(desk.bench.model().voxels_by_group[3] == 2000);
+    const size_t steps = desk.bench.model().undoable;
+    perform(PreviewLoad{desk.path("second.mask")});
+    REQUIRE(desk.bench.model().load_preview);
+    const LoadPreview shown = *desk.bench.model().load_preview;
+    CHECK(shown.path == desk.path("second.mask"));
+    CHECK(shown.part == Part::mask);
+    CHECK(shown.changes == "2000 voxels change their group.");
+    REQUIRE(shown.groups.size() == 2);
+    CHECK(shown.groups[0] == MaskPreview::Group{.group = 3, .before = 2000, .gained = 500, .lost = 1000});
+    CHECK(shown.groups[1] == MaskPreview::Group{.group = 7, .before = 0, .gained = 500, .lost = 0});
+    CHECK(desk.bench.model().undoable == steps);
+    CHECK(desk.bench.model().voxels_by_group[3] == 2000);
+    perform(PreviewLoad{});
+    CHECK(desk.bench.model().load_preview == nullptr);
+    perform(PreviewLoad{desk.path("second.mask")});
+    desk.folder.write("second.mask", first);  // what is loaded is what was previewed
+    perform(LoadAnnotation{desk.path("second.mask"), FileUse::mask});
+    CHECK(desk.bench.model().load_preview == nullptr);
+    CHECK(desk.bench.model().voxels_by_group[3] == shown.groups[0].after());
+    CHECK(desk.bench.model().voxels_by_group[7] == shown.groups[1].after());
+    CHECK(desk.bench.model().undoable == steps + 1);
+    perform(UndoOp{1});
+    perform(PreviewLoad{desk.path("first.mask")});
+    REQUIRE(desk.bench.model().load_preview);
+    CHECK_FALSE(desk.bench.model().load_preview->changes_anything);
+    CHECK(desk.bench.model().load_preview->changes == "The scan already has this mask.");
+    desk.folder.write("line.txt", "-v 10, 12, 14, 1, 2\n-v 12, 12, 14, 1, 2\n-l 0, 1, 2\n");
+    perform(PreviewLoad{desk.path("line.txt")});
+    REQUIRE(desk.bench.model().load_preview);
+    CHECK(desk.bench.model().load_preview->changes ==
+          "A trace of 2 nodes and 1 internode replaces one of 0 nodes and 0 internodes.");
+    desk.folder.write("look.json", R"({"points":[{"intensity":70,"opacity":0},{"intensity":210,"opacity":0.8}]})");
+    perform(PreviewLoad{desk.path("look.json")});
+    REQUIRE(desk.bench.model().load_preview);
+    CHECK(desk.bench.model().load_preview->changes == "The transfer function would be replaced.");
+    perform(LoadAnnotation{desk.path("look.json"), FileUse::look});
+    CHECK(desk.said("look.json is taken; undo takes it back"));
+    CHECK(desk.bench.model().undoable == steps + 1);
+    desk.folder.write("small.mask", std::string(12 * 20 * 16, '\1'));
+    perform(PreviewLoad{desk.path("small.mask")});
+    CHECK(desk.bench.model().load_preview == nullptr);
+    CHECK(desk.bench.messages().all().back().weight == Weight::error);
+}
+
 TEST_CASE_FIXTURE(OnDevice, "annotation that is dropped with its scan goes into that, not into what is open")
 {
     Desk desk(renderer());

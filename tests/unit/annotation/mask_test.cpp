@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+#include "engine/annotation/mask_preview.h"
+
 using namespace shvr;
 
 namespace {
@@ -108,6 +110,41 @@ TEST_CASE("voxels by group equal a recount after random dots")
         }
         CHECK(mask.voxels_by_group() == recount(mask));
     }
+}
+
+TEST_CASE("a preview of changes counts what groups gain and lose, as the mask does after them")
+{
+    std::mt19937 random(7);
+    Mask mask({37, 35, 34});
+    const auto voxel_at = [](int number) { return Size3(number % 37, number / 37 % 35, number / (37 * 35)); };
+    for (int number = 0; number < 3000; ++number)
+        if (random() % 2 == 0) mask.apply(dot(mask, voxel_at(number), uint8_t(1 + random() % 4)), Direction::forwards);
+    const auto before = mask.voxels_by_group();
+    MaskPreview preview(mask);
+    CHECK(preview.groups().empty());
+    CHECK(preview.voxels() == 0);
+    std::array<int64_t, 256> lost{};
+    int64_t changed = 0;
+    for (int number = 0; number < 3000; number += 3) {
+        const uint8_t old = mask.at(voxel_at(number));
+        const auto group = uint8_t(random() % 3 * 4);  // 0, 4 or 8: groups 1 to 3 only lose
+        if (group == old) continue;
+        const MaskBrickChange change = dot(mask, voxel_at(number), group);
+        preview.add(change);
+        mask.apply(change, Direction::forwards);
+        ++lost[old];
+        ++changed;
+    }
+    CHECK(preview.voxels() == changed);
+    std::vector<int> groups;
+    for (const MaskPreview::Group& row : preview.groups()) {
+        groups.push_back(row.group);
+        CAPTURE(row.group);
+        CHECK(row.before == before[size_t(row.group)]);
+        CHECK(row.lost == lost[size_t(row.group)]);
+        CHECK(row.after() == mask.voxels_by_group()[size_t(row.group)]);
+    }
+    CHECK(groups == std::vector<int>{1, 2, 3, 4, 8});
 }
 
 TEST_CASE("voxels beyond the 31st and 32nd bit of their index are their own")

@@ -104,6 +104,7 @@ std::vector<Action> samples()
             LookAtFile{"/tmp/a b.nrrd", "volume.frame=2"},
             TakeFile{"/tmp/a b.swc"},
             LoadAnnotation{"/tmp/a b.tif", FileUse::offsets},
+            PreviewLoad{"/tmp/a b.tif", FileUse::mask},
             DismissUnclearFile{},
             CorrectSpacing{{0.5, 0.5, 2.0}, "um"},
             DismissNotices{},

@@ -29,9 +29,14 @@ FileChooser saving({.title = "Continue under another name",
                     .wanted = FileChooser::Wanted::new_file});
 FileChooser taking({.title = "Load annotation or a curve",
                     .verb = "Load",
-                    .note = "Mask of the scan's size, offsets, trace or transfer function. It replaces the present "
-                            "one; undo restores that.",
+                    .note = "Mask of the scan's size, offsets, trace or transfer function. The next dialog states what "
+                            "it would change.",
                     .wanted = FileChooser::Wanted::file});
+
+FileChooser labelled({.title = "Open the scan of a label image",
+                      .verb = "Open",
+                      .note = "The label image is loaded into it as its mask; undo takes that back."});
+std::filesystem::path labels_of_scan;  ///< the label image for which `labelled` asks
 
 std::vector<Place> places_of(const Model& model)
 {
@@ -156,7 +161,16 @@ void ask_what_to_take(const Model& model)
 void name_and_take_dialogs(const Model& model, Actions& actions)
 {
     if (const auto path = saving.draw()) actions.push_back(SaveAs{*path});
-    if (const auto path = taking.draw(); path && model.is_open) actions.push_back(LoadAnnotation{.path = *path});
+    if (const auto path = taking.draw(); path && model.is_open) actions.push_back(PreviewLoad{.path = *path});
+    if (const auto path = labelled.draw())
+        actions.push_back(TakeFile{*path, labels_of_scan.string() + "\n", FileUse::scan});
+    load_preview_dialog(model, actions);
+}
+
+void ask_for_scan_of_labels(const Model& model)
+{
+    labels_of_scan = model.session.volume_path;
+    labelled.ask(model.session.volume_path.parent_path() / "", places_of(model));
 }
 
 void start_page(const Model& model, Actions& actions)

@@ -18,7 +18,7 @@ struct TakerAlone : DeskWithScan {
                     {.allow_outside = notes("allow_outside"),
                      .begin_open =
                          [this](const std::filesystem::path& path, const std::vector<std::string>&,
-                                std::vector<std::filesystem::path> taken_into_it) {
+                                std::vector<std::filesystem::path> taken_into_it, bool) {
                              opened.push_back(path);
                              together = std::move(taken_into_it);
                          },

@@ -15,6 +15,7 @@ namespace {
 struct OpenerAlone : DeskWithScan {
     Leave may_leave = Leave::now;
     std::vector<std::filesystem::path> taken;
+    std::vector<std::string> asked;
     Opener opener{desk,
                   keeper,
                   {.advance_jobs = [this] { end_jobs(); },
@@ -29,7 +30,8 @@ struct OpenerAlone : DeskWithScan {
                    .drop_screenshot = notes("drop_screenshot"),
                    .look_again = notes("look_again"),
                    .look_from = notes("look_from"),
-                   .take_file = [this](const TakeFile& file) { taken.push_back(file.path); },
+                   .load_annotation = [this](const LoadAnnotation& file) { taken.push_back(file.path); },
+                   .ask_what_it_is = [this](const UnclearFile& file) { asked.push_back(file.why); },
                    .record_settings = notes("record_settings"),
                    .begin_document = notes("begin_document")}};
     std::filesystem::path other = folder.path / "other.json";
