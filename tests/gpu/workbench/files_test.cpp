@@ -279,7 +279,7 @@ TEST_CASE_FIXTURE(OnDevice, "a mask is not taken for a scan: it is loaded, refus
 }
 
 // Kind (Masks): a label image of another program, given as a scan
-TEST_CASE_FIXTURE(OnDevice, "a label image that is opened as a scan is asked about, or told of where nothing is open")
+TEST_CASE_FIXTURE(OnDevice, "a label image that is opened as a scan is asked about, or reported where nothing is open")
 {
     Desk desk(renderer());
     const std::string header = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 24 20 16\nencoding: raw\n\n";

@@ -44,7 +44,7 @@ int ball_at(const Size3& voxel, int balls)
 }  // namespace
 
 // Kind (Masks): label images of other programs, which state nothing: 0 and 255, 0 to 3, gaps, wide and signed types
-TEST_CASE("voxels that are labels are told from intensities, in any type of integers")
+TEST_CASE("labels are distinguished from intensities, in any type of integers")
 {
     const auto balls = [](int count) { return [count](const Size3& voxel) { return double(ball_at(voxel, count)); }; };
     CHECK(verdict<uint8_t>(VoxelType::uint8, balls(3)) == "its voxels have the values 0 to 3 only");
