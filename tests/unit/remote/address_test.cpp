@@ -3,7 +3,8 @@
 #include "engine/base/error.h"
 #include "engine/remote/address.h"
 
-namespace shvr::address_tests {
+using namespace shvr;
+
 namespace {
 
 std::string refusal_of(const std::string& text)
@@ -80,4 +81,3 @@ TEST_CASE("remote: addresses stay whole as paths")
 }
 
 }  // namespace
-}  // namespace shvr::address_tests

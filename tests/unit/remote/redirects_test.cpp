@@ -4,7 +4,8 @@
 #include "engine/remote/local_host.h"
 #include "engine/remote/redirects.h"
 
-namespace shvr::redirect_tests {
+using namespace shvr;
+
 namespace {
 
 std::string refusal_of(const std::string& from, const std::string& location, bool is_from_local = false)
@@ -67,4 +68,3 @@ TEST_CASE("remote: addresses of this machine and its link")
 }
 
 }  // namespace
-}  // namespace shvr::redirect_tests

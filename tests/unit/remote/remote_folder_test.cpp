@@ -12,7 +12,8 @@
 #include "engine/remote/remote_folder.h"
 #include "tests/support/remote/canned_transport.h"
 
-namespace shvr::remote_folder_tests {
+using namespace shvr;
+
 namespace {
 
 using State = RemoteObject::State;
@@ -242,4 +243,3 @@ TEST_CASE("remote: a wait that is over ends the tries")
 }
 
 }  // namespace
-}  // namespace shvr::remote_folder_tests

@@ -6,7 +6,8 @@
 #include "engine/formats/zarr/store/remote_store.h"
 #include "tests/support/remote/canned_transport.h"
 
-namespace shvr::remote_store_tests {
+using namespace shvr;
+
 namespace {
 
 /// A store at https://h/x.zarr whose server has `objects`.
@@ -148,4 +149,3 @@ TEST_CASE("remote store: objects that change while the volume is open are report
 }
 
 }  // namespace
-}  // namespace shvr::remote_store_tests
