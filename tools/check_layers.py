@@ -44,7 +44,9 @@ MAY_INCLUDE = {
     "engine/annotation/patterns": "engine/base engine/volume engine/annotation/trace engine/annotation/measures",
     "engine/annotation/files": "engine/base engine/volume engine/annotation engine/annotation/trace engine/formats "
     "engine/formats/export engine/formats/tiff engine/formats/zarr engine/projects shaders",
-    "engine/annotation/operations": "engine/base engine/volume engine/components engine/annotation engine/annotation/trace",
+    "engine/annotation/sets": "engine/base engine/components engine/annotation",
+    "engine/annotation/operations": "engine/base engine/volume engine/annotation engine/annotation/trace "
+    "engine/annotation/sets",
     "engine/annotation/script": "engine/base engine/annotation engine/annotation/trace engine/annotation/operations "
     "engine/session",
     "engine/annotation/writers": "engine/base",
@@ -111,7 +113,7 @@ MAY_INCLUDE = {
     "ui": "engine/base engine/gpu engine/live haptics engine/workbench engine/workbench/models engine/workbench/sight "
     "engine/workbench/edits engine/workbench/bindings ui/panels",
     "tests": "*",
-    "tests/reference": "engine/annotation engine/annotation/operations",
+    "tests/reference": "engine/annotation engine/annotation/operations engine/annotation/trace",
     "tools/report": "engine/base engine/pages",
     "tools/bench": "engine/base engine/annotation engine/bricks engine/components engine/pages engine/projects engine/session "
     "tests/reference tools/golden tools/report",

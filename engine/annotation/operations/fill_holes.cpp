@@ -5,9 +5,9 @@
 
 #include <map>
 
-#include "engine/annotation/operations/brick_components.h"
 #include "engine/annotation/operations/group_bricks.h"
 #include "engine/annotation/operations/run_operation.h"
+#include "engine/annotation/sets/brick_components.h"
 #include "engine/base/text.h"
 
 namespace shvr {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <unordered_map>
 
-#include "engine/annotation/operations/brick_components.h"
 #include "engine/annotation/operations/group_bricks.h"
 #include "engine/annotation/operations/run_operation.h"
+#include "engine/annotation/sets/brick_components.h"
 #include "engine/base/text.h"
 #include "engine/volume/unit.h"
 

@@ -2,7 +2,7 @@
 
 #include "engine/annotation/operations/group_bricks.h"
 #include "engine/annotation/operations/run_operation.h"
-#include "engine/annotation/operations/voxels_near.h"
+#include "engine/annotation/sets/voxels_near.h"
 
 namespace shvr {
 

@@ -9,7 +9,7 @@
 #include <map>
 #include <vector>
 
-#include "engine/annotation/operations/brick_bits.h"
+#include "engine/annotation/sets/brick_bits.h"
 #include "engine/base/progress.h"
 
 namespace shvr {

@@ -1,9 +1,10 @@
-#include "engine/annotation/operations/voxels_near.h"
+#include "engine/annotation/sets/voxels_near.h"
 
 #include <cmath>
 #include <limits>
 #include <set>
 
+#include "engine/annotation/sets/parabolas.h"
 #include "engine/base/error.h"
 
 namespace shvr {
@@ -12,52 +13,6 @@ namespace {
 
 constexpr int64_t TILE_BRICKS = 2, TILE = TILE_BRICKS * BRICK_SIDE;
 constexpr uint16_t NONE = std::numeric_limits<uint16_t>::max();
-constexpr double INFINITE = std::numeric_limits<double>::infinity();
-
-/// Replaces f(i), values at points `spacing` apart, by min over j of f(j) + (spacing (i - j))^2, for i in [first, end).
-class Parabolas {
-public:
-    explicit Parabolas(double spacing) : square_(spacing * spacing) {}
-    /// `at(j)`: the value of f; values above `most` count as infinite. Returns false if all are.
-    template <class At>
-    bool build(int64_t count, double most, const At& at)
-    {
-        hulls_.clear();
-        for (int64_t j = 0; j < count; ++j) {
-            const double value = at(j);
-            if (!(value <= most)) continue;
-            double from = -INFINITE;
-            while (!hulls_.empty()) {
-                const Hull& last = hulls_.back();
-                // Where the parabolas of `last` and j meet
-                from = 0.5 * (double(j + last.at) + (value - last.value) / (square_ * double(j - last.at)));
-                if (from > last.from) break;
-                hulls_.pop_back();
-                from = -INFINITE;
-            }
-            hulls_.push_back({j, value, from});
-        }
-        return !hulls_.empty();
-    }
-    template <class Take>
-    void evaluate(int64_t first, int64_t end, const Take& take) const
-    {
-        size_t hull = 0;
-        for (int64_t i = first; i < end; ++i) {
-            while (hull + 1 < hulls_.size() && hulls_[hull + 1].from < double(i)) ++hull;
-            const auto away = double(i - hulls_[hull].at);
-            take(i, hulls_[hull].value + square_ * away * away);
-        }
-    }
-
-private:
-    struct Hull {
-        int64_t at;
-        double value, from;
-    };
-    double square_;
-    std::vector<Hull> hulls_;
-};
 
 class TileSearch {
 public:

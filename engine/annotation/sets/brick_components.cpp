@@ -1,4 +1,4 @@
-#include "engine/annotation/operations/brick_components.h"
+#include "engine/annotation/sets/brick_components.h"
 
 #include <algorithm>
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <vector>
 
-#include "engine/annotation/operations/brick_bits.h"
+#include "engine/annotation/sets/brick_bits.h"
 #include "engine/components/label_forest.h"
 
 namespace shvr {
