@@ -338,6 +338,25 @@ class OperationsOnGroups(CliTest):
             {"op": "undo"}, {"op": "hollow", "group": 7, "wall": 1}, expect_groups(_7=7),
             {"op": "undo"}, {"op": "hollow", "group": 7, "wall": 1, "side": "out"}, expect_groups(_7=12)])
 
+    def test_mask_from_trace(self):
+        self.prepare()
+        self.annotate([
+            {"op": "node", "at": [10.5, 10.5, 10.5], "radius": 2, "group": 5}, {"op": "mask_from_trace", "group": 7},
+            expect_groups(_7=33),
+            {"op": "undo"}, expect_groups(_7=0),
+            {"op": "node", "at": [20.5, 10.5, 10.5], "radius": 2, "group": 6},
+            {"op": "mask_from_trace", "group": 7, "of": [6]}, expect_groups(_7=33 + 10 * 13)])
+        self.assertIn("key of is [9]; expected groups of which the trace has nodes",
+                      self.refused({"op": "mask_from_trace", "group": 7, "of": [9]}))
+
+    def test_trace_from_mask(self):
+        self.prepare()
+        expect = lambda nodes, internodes: {"op": "expect", "nodes": nodes, "internodes": internodes}
+        self.annotate([
+            fill_box(3, 10, 10, 10), {"op": "trace_from_mask", "group": 3}, expect(1, 0), {"op": "undo"}, expect(0, 0),
+            {"op": "redo"}, expect(1, 0)])
+        self.assertIn("group 9 has no voxels", self.refused({"op": "trace_from_mask", "group": 9}))
+
     def test_locks_are_heeded_and_counted(self):
         self.prepare(groups={"4": {"locked": True, "name": "vein"}})
         script = self.write_script("script.jsonl", [fill_box(3, 5, 5, 5), {"op": "save"}])

@@ -173,6 +173,41 @@ DenseGroups wanted_by(const HollowOp& op, DenseGroups dense, const DenseVolume& 
     return replaced(dense, op.group, set);
 }
 
+/// The least of distance minus radius over the balls on the way from a to b, by golden sections: both are convex.
+double outside_by(const glm::dvec3& point, const TraceGraph& trace, const TraceInternode& internode)
+{
+    const glm::dvec3 a = trace.node(internode.a).position, b = trace.node(internode.b).position;
+    const double from = trace.radius_of(internode, 0.0), to = trace.radius_of(internode, 1.0);
+    const auto at = [&](double t) { return glm::distance(point, a + t * (b - a)) - (from + t * (to - from)); };
+    constexpr double GOLDEN = 0.6180339887498949;
+    double low = 0.0, high = 1.0;
+    for (int i = 0; i < 40; ++i) {
+        const double left = high - GOLDEN * (high - low), right = low + GOLDEN * (high - low);
+        (at(left) < at(right) ? high : low) = at(left) < at(right) ? right : left;
+    }
+    return std::min({at(low), at(0.0), at(1.0)});
+}
+
+DenseGroups wanted_by(const MaskFromTraceOp& op, DenseGroups dense, const DenseVolume& volume)
+{
+    const auto is_chosen = [&](uint8_t group) { return op.of.empty() || std::ranges::count(op.of, group) > 0; };
+    for_each_voxel(dense.size, [&](const Size3& voxel) {
+        const glm::dvec3 point = (glm::dvec3(voxel) + 0.5) * volume.spacing;
+        double least = 1e300;
+        for (const auto& [number, node] : volume.trace->nodes())
+            if (is_chosen(node.group)) least = std::min(least, glm::distance(point, node.position) - node.radius);
+        for (const auto& [number, internode] : volume.trace->internodes())
+            if (is_chosen(internode.group)) least = std::min(least, outside_by(point, *volume.trace, internode));
+        if (least <= 1e-10) dense.at(voxel) = uint8_t(op.group);
+    });
+    return dense;
+}
+
+DenseGroups wanted_by(const TraceFromMaskOp&, DenseGroups dense, const DenseVolume&)
+{
+    return dense;  // changes no voxel
+}
+
 }  // namespace
 
 DenseGroups wanted(const GroupOperation& operation, const DenseGroups& before, const DenseVolume& volume)

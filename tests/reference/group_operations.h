@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/annotation/operations/operations.h"
+#include "engine/annotation/trace/tracing.h"
 
 namespace shvr::reference {
 
@@ -38,6 +39,7 @@ std::vector<std::vector<Size3>> components_of(const DenseGroups& dense, const st
 struct DenseVolume {
     glm::dvec3 spacing{1.0};  ///< mm
     std::vector<double> intensities{};
+    const TraceGraph* trace = nullptr;
 };
 
 /// The groups that the operation wants, without limits and locks.

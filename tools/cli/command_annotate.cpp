@@ -178,9 +178,16 @@ void check_radii(const std::vector<ScriptLine>& script, const std::string& name,
             }
 }
 
-bool is_group_operation(const ScriptOp& op)
+bool is_painting_operation(const ScriptOp& op)
 {
-    return std::visit([]<class Op>(const Op&) { return IS_GROUP_OPERATION<Op>; }, op);
+    return std::visit(
+        []<class Op>(const Op&) {
+            if constexpr (requires { Op::ADDS_TRACE; })
+                return false;
+            else
+                return IS_GROUP_OPERATION<Op>;
+        },
+        op);
 }
 
 /// Checks before anything is done whether a script that saves has files to save to.
@@ -192,7 +199,7 @@ void check_names(const std::vector<ScriptLine>& script, const std::string& name,
     for (const ScriptLine& line : script) {
         if (!save && std::holds_alternative<SaveOp>(line.op)) save = &line;
         const auto* const paint = std::get_if<PaintOp>(&line.op);
-        paints |= paint ? paint->paints_group : is_group_operation(line.op);
+        paints |= paint ? paint->paints_group : is_painting_operation(line.op);
         raises |= paint && paint->density;
     }
     if (!save) return;

@@ -73,6 +73,7 @@ std::string kept_in_words(const OperationResult& result, const GroupNames& name_
 std::string sentence_of(const OperationResult& result, const std::string& title, const GroupNames& name_of)
 {
     const std::string note = result.note.empty() ? "" : "; " + result.note, kept = kept_in_words(result, name_of);
+    if (!result.trace_changes.empty()) return sentence(title, ": ", result.note, kept);
     return sentence(title, ": ", result.voxels == 0 ? "nothing changed" : moved_in_words(result, name_of), note, kept);
 }
 
@@ -85,6 +86,14 @@ const VolumeSource& MaskEdit::source() const
 {
     if (!input_.source) fail("the operation needs intensities, and there are none here");
     return *input_.source;
+}
+
+void MaskEdit::check_memory(uint64_t bytes) const
+{
+    const auto mib = [](uint64_t size) { return (size + (uint64_t{1} << 20) - 1) >> 20; };
+    if (input_.memory == 0 || bytes <= input_.memory) return;
+    fail("the operation takes ", mib(bytes), " MiB of memory; expected at most ", mib(input_.memory),
+         " MiB, the budget of the host: use a larger --budget-host, or a smaller group");
 }
 
 const MaskBrick& MaskEdit::read(int64_t brick)

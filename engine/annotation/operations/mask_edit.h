@@ -26,11 +26,13 @@ struct OperationInput {
     const VolumeSource* source = nullptr;  ///< intensities, with density offsets; null: none can be read
     const TraceGraph* trace = nullptr;     ///< null: there is none
     GroupSet locked{};
+    uint64_t memory = 0;  ///< most bytes that an operation may take for itself; 0: any number
 };
 
 struct OperationResult {
     std::vector<MaskBrickChange> changes{};  ///< in ascending order of bricks
-    int64_t voxels = 0;                      ///< that change their group
+    std::vector<TraceChange> trace_changes{};
+    int64_t voxels = 0;  ///< that change their group
     /// Voxels by their groups before and after.
     std::map<std::pair<uint8_t, uint8_t>, int64_t> moved{};
     StrokeResult::ByGroup kept_locked{};  ///< voxels that stay, because their group or the new one (the key) is locked
@@ -53,12 +55,15 @@ public:
     /// Fails if the input has none.
     const VolumeSource& source() const;
     void count_intensities(int64_t bricks) { result_.bricks_of_intensities += bricks; }
+    /// Fails if an operation that is about to take this many bytes may not.
+    void check_memory(uint64_t bytes) const;
     /// A brick of the mask, all zeros if unpainted; counted.
     const MaskBrick& read(int64_t brick);
     /// Whether any voxel of the brick lies in the limits' box; if not, wanting it has no effect.
     bool may_change(int64_t brick) const;
     /// Changes the voxels of a brick to `wanted`, as far as they may change. Each brick at most once.
     void want(int64_t brick, const MaskBrick& wanted);
+    void change_trace(std::vector<TraceChange> changes) { result_.trace_changes = std::move(changes); }
     void note(std::string text) { result_.note = std::move(text); }
     OperationResult take();
 

@@ -102,6 +102,24 @@ struct ThresholdOp {
     static constexpr bool READS_INTENSITIES = true, PAINTS_ONLY = true;
 };
 
+/// Gives the group all voxels whose centres lie in a ball of a node or in the cone of an internode
+/// (trace_shapes.h).
+struct MaskFromTraceOp {
+    int64_t group = 1;
+    std::vector<uint8_t> of{};  ///< groups of the nodes and internodes; empty: all of the trace
+    OperationLimits limits{};
+    static constexpr bool READS_TRACE = true, PAINTS_ONLY = true;
+};
+
+/// Adds the centre lines of a group to the trace, with the distance to its surface as radius; changes no voxel.
+struct TraceFromMaskOp {
+    int64_t group = 1;
+    /// A line with a loose end goes if it reaches at most this many radii of the trace where it leaves.
+    double spur = 1.5;
+    std::optional<double> tolerance{};  ///< of positions and radii between nodes; null: the longest side of a voxel
+    static constexpr bool ADDS_TRACE = true;
+};
+
 /// The texts of an operation, and how its parameters are visited: `fields(f, op)`, f as in engine/session/fields.h.
 struct OperationRow {
     const char* id = "";       ///< never changes: files refer to it
@@ -185,6 +203,23 @@ inline constexpr auto OPERATIONS = std::tuple{
                                 {.meaning = "thickness, in the unit of the volume's spacing", .is_required = true});
                             f.choice("side", op.side, {"on which side of the group's surface the wall lies"});
                         }),
+    operation<MaskFromTraceOp>(
+        {"mask_from_trace", "Mask from trace", "gives a group all voxels in the trace's balls and cones"},
+        [](auto& f, MaskFromTraceOp& op) {
+            GROUP_FIELD(f, op.group);
+            f.other(
+                "of", [&](const JsonNode& node) { op.of = read_groups(node); },
+                [&] { return op.of.empty() ? std::nullopt : std::optional(text_of(op.of)); },
+                {"only nodes and internodes of these groups, such as [1, 2]; default: of all"});
+        }),
+    operation<TraceFromMaskOp>(
+        {"trace_from_mask", "Trace from mask", "adds the centre lines of a group, with radii, to the trace"},
+        [](auto& f, TraceFromMaskOp& op) {
+            GROUP_FIELD(f, op.group);
+            f.number("spur", op.spur, {0.0, 1e6}, {"how far a side line with a loose end must reach", "radii"});
+            f.number("tolerance", op.tolerance, {0.0, 1e12},
+                     {"how far nodes may be off the centre line, in the unit of the volume's spacing"});
+        }),
 };
 
 /// One of the rows' Kinds.
@@ -203,7 +238,7 @@ inline const OperationRow& row_of(const GroupOperation& operation)
     return OPERATION_ROWS[operation.index()];
 }
 
-/// Visits the keys of an operation: its own, then its limits.
+/// Visits the keys of an operation: its own, then its limits, if it changes voxels.
 template <class Fields, class Kind>
 void operation_fields(Fields& f, Kind& op)
 {
@@ -215,7 +250,7 @@ void operation_fields(Fields& f, Kind& op)
             (visit(rows), ...);
         },
         OPERATIONS);
-    limit_fields(f, op.limits);
+    if constexpr (requires { op.limits; }) limit_fields(f, op.limits);
 }
 
 }  // namespace shvr

@@ -8,7 +8,10 @@ OperationResult run(const GroupOperation& operation, const OperationInput& input
 {
     return std::visit(
         [&](const auto& op) {
-            MaskEdit edit(input, op.limits);
+            const OperationLimits none;
+            const OperationLimits* limits = &none;
+            if constexpr (requires { op.limits; }) limits = &op.limits;
+            MaskEdit edit(input, *limits);
             tell(progress, 0.0);
             perform(op, edit, progress);
             tell(progress, 1.0);
@@ -36,8 +39,10 @@ bool needs_intensities(const GroupOperation& operation)
         []<class Op>(const Op& op) {
             if constexpr (requires { Op::READS_INTENSITIES; })
                 return true;
-            else
+            else if constexpr (requires { op.limits; })
                 return op.limits.within.has_value();
+            else
+                return false;
         },
         operation);
 }

@@ -43,7 +43,9 @@ std::string why_not_operated(const Model& model, const GroupOperation& operation
     if (!why.empty()) return why;
     return std::visit(
         [&]<class Op>(const Op& op) -> std::string {
-            if constexpr (requires { Op::PAINTS_ONLY; })
+            if constexpr (requires { Op::READS_TRACE; })
+                return model.trace.nodes().empty() ? "the trace has no nodes" : "";
+            else if constexpr (requires { Op::PAINTS_ONLY; })
                 return {};
             else if constexpr (requires { op.with; })
                 return model.voxels_by_group[size_t(op.group)] + model.voxels_by_group[size_t(op.with)] == 0

@@ -17,6 +17,7 @@ struct GroupEditor::Snapshot {
     DensityField density;
     std::shared_ptr<const VolumeSource> source;
     GroupSet locked;
+    uint64_t memory = 0;
 };
 
 void GroupEditor::begin(const GroupOperation& operation)
@@ -25,9 +26,9 @@ void GroupEditor::begin(const GroupOperation& operation)
     if (annotator.stroke_is_running()) fail("a stroke is being painted; expected it to have ended");
     others_.record_settings();
     const shvr::Document& annotation = annotator.document();
-    auto snapshot =
-        std::make_shared<Snapshot>(Snapshot{annotation.mask, annotation.trace, document_->volume(), annotation.density,
-                                            document_->source, locked_groups(document_->session.groups)});
+    auto snapshot = std::make_shared<Snapshot>(
+        Snapshot{annotation.mask, annotation.trace, document_->volume(), annotation.density, document_->source,
+                 locked_groups(document_->session.groups), renderer_.host_budget()});
     is_done_ = false;
     const uint64_t revision = annotator.revision(), opening = desk_.openings;
     running_ =
@@ -41,7 +42,8 @@ void GroupEditor::begin(const GroupOperation& operation)
                                                                              .volume = snapshot->volume,
                                                                              .source = source.get(),
                                                                              .trace = &snapshot->trace,
-                                                                             .locked = snapshot->locked},
+                                                                             .locked = snapshot->locked,
+                                                                             .memory = snapshot->memory},
                                                                             progress));
                         return [this, operation, revision, opening, result] {
                             if (!document_ || desk_.openings != opening)
@@ -58,14 +60,15 @@ void GroupEditor::end(const GroupOperation& operation, uint64_t revision, Operat
         fail(row_of(operation).title,
              ": the annotation was changed while this was computed, so nothing was done; repeat it");
     others_.record_settings();
-    const Command* const command =
-        annotator.perform(label_of(operation), as_changes(std::exchange(result.changes, {})));
+    std::vector<Change> changes = as_changes(std::exchange(result.changes, {}));
+    std::ranges::move(as_changes(result.trace_changes), std::back_inserter(changes));
+    const Command* const command = annotator.perform(label_of(operation), std::move(changes));
     if (command) others_.show_changes(*command);
     last_ = std::move(result);
     is_done_ = true;
     say(sentence_of(last_, row_of(operation).title,
                     [&](uint8_t group) { return group_of(document_->session.groups, group).name; }),
-        last_.voxels > 0 && last_.kept_locked.empty() ? Weight::done : Weight::warning);
+        command && last_.kept_locked.empty() ? Weight::done : Weight::warning);
 }
 
 const OperationResult& GroupEditor::finish(const Progress& progress)

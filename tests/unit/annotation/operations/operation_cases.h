@@ -83,16 +83,23 @@ inline DenseGroups limited(const DenseGroups& before, DenseGroups wanted, const 
 
 /// Runs the operation, compares the result with the reference, and takes it back.
 inline OperationResult check_operation(const GroupOperation& operation, const DenseGroups& before,
-                                       const glm::dvec3& spacing = {1, 1, 1}, const GroupSet& locked = {})
+                                       const glm::dvec3& spacing = {1, 1, 1}, const GroupSet& locked = {},
+                                       const TraceGraph* trace = nullptr)
 {
     Mask mask = mask_of(before);
     const PatternSource source(before.size, spacing);
     const OperationInput input{
-        .mask = mask, .volume = source.info(), .source = &source, .trace = nullptr, .locked = locked};
+        .mask = mask, .volume = source.info(), .source = &source, .trace = trace, .locked = locked};
     const OperationResult result = run(operation, input);
-    const OperationLimits& limits =
-        std::visit([](const auto& op) -> const OperationLimits& { return op.limits; }, operation);
-    reference::DenseVolume volume{spacing, {}};
+    const OperationLimits limits = std::visit(
+        [](const auto& op) {
+            if constexpr (requires { op.limits; })
+                return op.limits;
+            else
+                return OperationLimits{};
+        },
+        operation);
+    reference::DenseVolume volume{spacing, {}, trace};
     reference::for_each_voxel(
         before.size, [&](const Size3& voxel) { volume.intensities.push_back(PatternSource::value_at(voxel)); });
     const DenseGroups expected = limited(before, reference::wanted(operation, before, volume), limits, locked);
