@@ -338,6 +338,14 @@ class OperationsOnGroups(CliTest):
             {"op": "undo"}, {"op": "hollow", "group": 7, "wall": 1}, expect_groups(_7=7),
             {"op": "undo"}, {"op": "hollow", "group": 7, "wall": 1, "side": "out"}, expect_groups(_7=12)])
 
+    def test_lines_of_smoothing(self):
+        self.prepare()
+        self.annotate([
+            {"op": "threshold", "group": 7, "from": 0, "to": 255, "box": [2, 2, 2, 5, 5, 5]}, expect_groups(_7=27),
+            {"op": "smooth", "distance": 1.5}, expect_groups(_7=19), {"op": "undo"}, expect_groups(_7=27),
+            {"op": "smooth", "distance": 1.5, "groups": [6, 7], "method": "gaussian"}, expect_groups(_7=19)])
+        self.annotate([{"op": "smooth", "distance": 1.5, "groups": [6]}, expect_groups(_6=0, _7=19)])   # is empty
+
     def test_mask_from_trace(self):
         self.prepare()
         self.annotate([

@@ -1,6 +1,7 @@
 #include "tests/reference/group_operations.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace shvr::reference {
@@ -171,6 +172,36 @@ DenseGroups wanted_by(const HollowOp& op, DenseGroups dense, const DenseVolume& 
         set[i] = (op.side != Side::out && group[i] != 0 && inner[i] == 0) ||
                  (op.side != Side::in && group[i] == 0 && outer[i] != 0);
     return replaced(dense, op.group, set);
+}
+
+DenseGroups wanted_by(const SmoothOp& op, DenseGroups dense, const DenseVolume& volume)
+{
+    const auto is_chosen = [&](uint8_t group) { return std::ranges::find(op.groups, group) != op.groups.end(); };
+    const DenseGroups before = dense;
+    const Size3 reach(glm::floor(op.distance * (1.0 + 5e-10) / volume.spacing));
+    const auto weight = [&](const Size3& offset) {
+        const glm::dvec3 away = glm::dvec3(offset) * volume.spacing;
+        if (op.method == SmoothOp::Method::median)
+            return int64_t{glm::dot(away, away) <= op.distance * op.distance * (1.0 + 1e-9)};
+        int64_t product = 1;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double sigmas = 2.0 * away[axis] / op.distance;
+            product *= std::llround(1024.0 * std::exp(-0.5 * sigmas * sigmas));
+        }
+        return product;
+    };
+    for_each_voxel(dense.size, [&](const Size3& voxel) {
+        std::vector<int64_t> weights(256);
+        for_each_voxel(int64_t{2} * reach + int64_t{1}, [&](const Size3& step) {
+            const Size3 other = voxel + step - reach;
+            if (dense.contains(other)) weights[before.at(other)] += weight(step - reach);
+        });
+        const uint8_t own = before.at(voxel);
+        const auto most = std::ranges::max_element(weights);
+        const uint8_t winner = weights[own] == *most ? own : uint8_t(most - weights.begin());
+        if (op.groups.empty() || is_chosen(own) || is_chosen(winner)) dense.at(voxel) = winner;
+    });
+    return dense;
 }
 
 /// The least of distance minus radius over the balls on the way from a to b, by golden sections: both are convex.

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <type_traits>
 #include <variant>
+#include <vector>
 
 #include "engine/annotation/operations/operation_limits.h"
 
@@ -91,6 +92,25 @@ inline constexpr Spelling<HollowOp::Side> HOLLOW_SIDES[] = {
 constexpr std::span<const Spelling<HollowOp::Side>> spellings_of(HollowOp::Side)
 {
     return HOLLOW_SIDES;
+}
+
+/// Smooths the borders of all groups together: a voxel gets the group with the greatest weight within the distance,
+/// where unpainted counts like a group; of equal ones its own, then the one with the lowest number.
+struct SmoothOp {
+    enum class Method {
+        median,   ///< all voxels within the distance weigh the same
+        gaussian  ///< standard deviation distance / 2, cut off beyond the distance along each axis
+    };
+    std::vector<uint8_t> groups{};  ///< only voxels that leave or join one of them change; empty: all groups
+    double distance = 0.0;          ///< in the unit of the volume's spacing
+    Method method = Method::median;
+    OperationLimits limits{};
+};
+inline constexpr Spelling<SmoothOp::Method> SMOOTHINGS[] = {{SmoothOp::Method::median, "median"},
+                                                            {SmoothOp::Method::gaussian, "gaussian"}};
+constexpr std::span<const Spelling<SmoothOp::Method>> spellings_of(SmoothOp::Method)
+{
+    return SMOOTHINGS;
 }
 
 /// Gives the group all voxels whose intensities lie between two values, both inclusive; NaN lies in no range.
@@ -203,6 +223,17 @@ inline constexpr auto OPERATIONS = std::tuple{
                                 {.meaning = "thickness, in the unit of the volume's spacing", .is_required = true});
                             f.choice("side", op.side, {"on which side of the group's surface the wall lies"});
                         }),
+    operation<SmoothOp>(
+        {"smooth", "Smooth", "smooths the borders of some groups or all groups"},
+        [](auto& f, SmoothOp& op) {
+            f.other(
+                "groups", [&](const JsonNode& node) { op.groups = read_groups(node); },
+                [&] { return op.groups.empty() ? std::nullopt : std::optional(text_of(op.groups)); },
+                {"only voxels that leave or join one of these groups change, such as [1, 2]; default: all groups"});
+            f.choice("method", op.method, {"the weights of the voxels within the distance"});
+            f.number("distance", op.distance, OPERATION_DISTANCE,
+                     {.meaning = "in the unit of the volume's spacing, inclusive", .is_required = true});
+        }),
     operation<MaskFromTraceOp>(
         {"mask_from_trace", "Mask from trace", "gives a group all voxels in the trace's balls and cones"},
         [](auto& f, MaskFromTraceOp& op) {

@@ -37,6 +37,24 @@ std::string why_without_group(const Model& model, uint8_t group)
     return group == 0 ? "group 0 is the eraser; choose a group from 1 up" : why_not_traced(model);
 }
 
+namespace {
+
+/// `groups`: empty stands for all groups.
+std::string why_all_empty(const Model& model, const std::vector<uint8_t>& groups)
+{
+    const auto is_painted = [&](uint8_t group) { return model.voxels_by_group[group] > 0; };
+    const auto has_voxels = [](int64_t voxels) { return voxels > 0; };
+    if (groups.empty())
+        return std::any_of(model.voxels_by_group.begin() + 1, model.voxels_by_group.end(), has_voxels)
+                   ? ""
+                   : "no group has voxels";
+    if (std::ranges::any_of(groups, is_painted)) return {};
+    return groups.size() == 1 ? sentence("group ", int(groups[0]), " has no voxels")
+                              : sentence("the groups ", shvr::text_of(groups), " have no voxels");
+}
+
+}  // namespace
+
 std::string why_not_operated(const Model& model, const GroupOperation& operation)
 {
     const std::string why = why_not_traced(model);
@@ -47,6 +65,8 @@ std::string why_not_operated(const Model& model, const GroupOperation& operation
                 return model.trace.nodes().empty() ? "the trace has no nodes" : "";
             else if constexpr (requires { Op::PAINTS_ONLY; })
                 return {};
+            else if constexpr (requires { op.groups; })
+                return why_all_empty(model, op.groups);
             else if constexpr (requires { op.with; })
                 return model.voxels_by_group[size_t(op.group)] + model.voxels_by_group[size_t(op.with)] == 0
                            ? sentence("groups ", op.group, " and ", op.with, " have no voxels")

@@ -65,6 +65,8 @@ std::vector<Action> samples()
             OpenOp{.group = 1, .distance = 3},
             CloseOp{.group = 1, .distance = 1e-6},
             HollowOp{.group = 1, .wall = 2, .side = HollowOp::Side::both},
+            SmoothOp{.distance = 2.5},
+            SmoothOp{.groups = {7, 3}, .distance = 0.25, .method = SmoothOp::Method::gaussian},
             DragNode{true},
             NodeOp{{1, 2, 3}, 2.5, uint8_t{4}},
             NodeOp{{1, 2, 3}, {}, {}},

@@ -1,0 +1,266 @@
+// Smooths all groups jointly: a voxel gets the group with the greatest weight in the kernel around it, where unpainted
+// is a group like the others. So no group appears that the kernel does not hold, and a voxel becomes unpainted only if
+// an unpainted one is in its kernel. Weights are whole numbers: the result does not depend on the order of sums.
+//
+// Median: a ball, slid along x; a step costs the rows of the ball, not its voxels. Gaussian: three passes for each
+// group that the surroundings of a brick hold.
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "engine/annotation/operations/group_bricks.h"
+#include "engine/annotation/operations/run_operation.h"
+#include "engine/annotation/sets/voxels_near.h"
+#include "engine/base/error.h"
+
+namespace shvr {
+
+namespace {
+
+/// The kernel may not reach beyond the neighbouring bricks.
+constexpr int64_t MAX_KERNEL = BRICK_SIDE;
+
+/// A brick with what its kernel reaches, up to the volume's border; x fastest.
+struct Surroundings {
+    VoxelBox core{}, box{};
+    std::vector<uint8_t> groups{};
+    std::vector<uint8_t> held{};  ///< the groups that occur, ascending
+    size_t index(const Size3& at) const { return size_t(index_of(at - box.lower, box.size())); }
+};
+
+/// Voxels of a row at (0, y, z) from the centre: -half to half along x.
+struct KernelRow {
+    int64_t y = 0, z = 0, half = 0;
+};
+
+Size3 kernel_of(const SmoothOp& op, const MaskEdit& edit)
+{
+    const glm::dvec3& spacing = edit.input().volume.spacing;
+    const Size3 voxels = Reach{edit.mask(), spacing, op.distance}.voxels();
+    for (int axis = 0; axis < 3; ++axis)
+        if (voxels[axis] > MAX_KERNEL)
+            fail("the distance is ", op.distance, ", ", voxels[axis], " voxels along ", "xyz"[axis],
+                 "; expected at most ", MAX_KERNEL, " voxels");
+    return voxels;
+}
+
+/// The bricks that the kernel joins to a painted one.
+std::set<int64_t> bricks_around(const Mask& mask, const Size3& kernel)
+{
+    const Size3 counts = mask.brick_counts(), reach = glm::min(kernel, Size3(1));
+    std::set<int64_t> bricks;
+    for (const int64_t brick : mask.painted_bricks()) {
+        const Size3 at = position_of(brick, counts), lower = glm::max(at - reach, Size3(0)),
+                    upper = glm::min(at + reach, counts - int64_t{1});
+        for (int64_t z = lower.z; z <= upper.z; ++z)
+            for (int64_t y = lower.y; y <= upper.y; ++y)
+                for (int64_t x = lower.x; x <= upper.x; ++x) bricks.insert(index_of(Size3(x, y, z), counts));
+    }
+    return bricks;
+}
+
+void read_part(int64_t brick, MaskEdit& edit, Surroundings& around)
+{
+    const VoxelBox own = edit.mask().box_of(brick);
+    const MaskBrick& voxels = edit.read(brick);
+    const Size3 lower = glm::max(own.lower, around.box.lower), upper = glm::min(own.upper, around.box.upper);
+    for (int64_t z = lower.z; z < upper.z; ++z)
+        for (int64_t y = lower.y; y < upper.y; ++y) {
+            const auto from = voxels.begin() + index_of(Size3(lower.x, y, z) - own.lower, Size3(BRICK_SIDE));
+            std::copy_n(from, upper.x - lower.x, around.groups.begin() + int64_t(around.index({lower.x, y, z})));
+        }
+}
+
+Surroundings surroundings_of(int64_t brick, const Size3& kernel, MaskEdit& edit)
+{
+    const Mask& mask = edit.mask();
+    const VoxelBox core = mask.box_of(brick);
+    Surroundings around{.core = core,
+                        .box = {glm::max(core.lower - kernel, Size3(0)), glm::min(core.upper + kernel, mask.size())}};
+    const Size3 extent = around.box.size();
+    around.groups.resize(size_t(extent.x * extent.y * extent.z));
+    const Size3 first = around.box.lower / BRICK_SIDE, last = (around.box.upper - int64_t{1}) / BRICK_SIDE;
+    for (int64_t z = first.z; z <= last.z; ++z)
+        for (int64_t y = first.y; y <= last.y; ++y)
+            for (int64_t x = first.x; x <= last.x; ++x)
+                read_part(index_of(Size3(x, y, z), mask.brick_counts()), edit, around);
+    std::array<bool, 256> is_held{};
+    for (const uint8_t group : around.groups) is_held[group] = true;
+    for (size_t group = 0; group < 256; ++group)
+        if (is_held[group]) around.held.push_back(uint8_t(group));
+    return around;
+}
+
+/// The best group for each voxel of the core, x fastest, of the groups offered so far. One weight for each voxel is
+/// kept, so memory does not grow with the number of groups.
+class Winners {
+public:
+    explicit Winners(const Surroundings& around);
+    /// Groups must be offered in ascending order: of equal weights the voxel's own group wins, then the first.
+    void offer(size_t voxel, uint8_t group, uint64_t weight)
+    {
+        if (weight < weights_[voxel] || (weight == weights_[voxel] && group != own_[voxel])) return;
+        weights_[voxel] = weight;
+        groups_[voxel] = group;
+    }
+    std::span<const uint8_t> groups() const { return groups_; }
+
+private:
+    std::vector<uint8_t> own_, groups_;
+    std::vector<uint64_t> weights_;
+};
+
+Winners::Winners(const Surroundings& around)
+{
+    const VoxelBox& core = around.core;
+    for (int64_t z = core.lower.z; z < core.upper.z; ++z)
+        for (int64_t y = core.lower.y; y < core.upper.y; ++y) {
+            const auto from = around.groups.begin() + int64_t(around.index({core.lower.x, y, z}));
+            own_.insert(own_.end(), from, from + core.size().x);
+        }
+    groups_ = own_;
+    weights_.resize(own_.size());
+}
+
+std::vector<KernelRow> ball_of(const SmoothOp& op, const Size3& kernel, const MaskEdit& edit)
+{
+    const glm::dvec3& spacing = edit.input().volume.spacing;
+    const double most = Reach{edit.mask(), spacing, op.distance}.most_squared();
+    std::vector<KernelRow> rows;
+    for (int64_t z = -kernel.z; z <= kernel.z; ++z)
+        for (int64_t y = -kernel.y; y <= kernel.y; ++y) {
+            int64_t half = kernel.x;
+            const auto is_beyond = [&] {
+                const glm::dvec3 away = glm::dvec3(double(half), double(y), double(z)) * spacing;
+                return glm::dot(away, away) > most;
+            };
+            while (half >= 0 && is_beyond()) --half;
+            if (half >= 0) rows.push_back({y, z, half});
+        }
+    return rows;
+}
+
+/// Offers the groups for the row of the core that begins at `start`; `first` is the row's first voxel in `winners`.
+void offer_row(const Surroundings& around, std::span<const KernelRow> ball, const Size3& start, size_t first,
+               Winners& winners)
+{
+    std::array<uint64_t, 256> counts{};
+    const VoxelBox& box = around.box;
+    for (int64_t x = start.x; x < around.core.upper.x; ++x) {
+        const bool is_first = x == start.x;
+        for (const KernelRow& row : ball) {
+            const int64_t y = start.y + row.y, z = start.z + row.z;
+            if (y < box.lower.y || y >= box.upper.y || z < box.lower.z || z >= box.upper.z) continue;
+            const uint8_t* const groups = &around.groups[around.index({box.lower.x, y, z})];
+            const int64_t from = std::max(is_first ? x - row.half : x + row.half, box.lower.x),
+                          to = std::min(x + row.half + 1, box.upper.x), gone = x - row.half - 1;
+            for (int64_t at = from; at < to; ++at) ++counts[groups[at - box.lower.x]];
+            if (!is_first && gone >= box.lower.x) --counts[groups[gone - box.lower.x]];
+        }
+        for (const uint8_t group : around.held) winners.offer(first + size_t(x - start.x), group, counts[group]);
+    }
+}
+
+Winners median_winners(const Surroundings& around, std::span<const KernelRow> ball)
+{
+    const VoxelBox& core = around.core;
+    Winners winners(around);
+    size_t first = 0;
+    for (int64_t z = core.lower.z; z < core.upper.z; ++z)
+        for (int64_t y = core.lower.y; y < core.upper.y; ++y, first += size_t(core.size().x))
+            offer_row(around, ball, {core.lower.x, y, z}, first, winners);
+    return winners;
+}
+
+/// Weights for 0, 1, ... voxels along an axis; at most 1024 each, so that 64 bits hold the product of three sums.
+std::vector<uint64_t> gaussian_along(double spacing, double distance, int64_t voxels)
+{
+    std::vector<uint64_t> weights;
+    for (int64_t i = 0; i <= voxels; ++i) {
+        const double sigmas = double(i) * spacing / (0.5 * distance);
+        weights.push_back(uint64_t(std::llround(1024.0 * std::exp(-0.5 * sigmas * sigmas))));
+    }
+    return weights;
+}
+
+/// A weight for each voxel of a box, x fastest.
+using Weights = std::vector<uint64_t>;
+
+/// One pass: `from` fills `box`; the result is cut to the core along the axis, as `box` is then.
+Weights blurred(const Weights& from, VoxelBox& box, const VoxelBox& core, int axis, std::span<const uint64_t> along)
+{
+    VoxelBox cut = box;
+    cut.lower[axis] = core.lower[axis];
+    cut.upper[axis] = core.upper[axis];
+    const Size3 extent = cut.size();
+    const auto reach = int64_t(along.size()) - 1;
+    Weights sums(size_t(extent.x * extent.y * extent.z));
+    size_t next = 0;
+    for (int64_t z = cut.lower.z; z < cut.upper.z; ++z)
+        for (int64_t y = cut.lower.y; y < cut.upper.y; ++y)
+            for (int64_t x = cut.lower.x; x < cut.upper.x; ++x, ++next) {
+                Size3 at(x, y, z);
+                const int64_t centre = at[axis], first = std::max(centre - reach, box.lower[axis]),
+                              last = std::min(centre + reach, box.upper[axis] - 1);
+                for (at[axis] = first; at[axis] <= last; ++at[axis])
+                    sums[next] +=
+                        along[size_t(std::abs(at[axis] - centre))] * from[size_t(index_of(at - box.lower, box.size()))];
+            }
+    box = cut;
+    return sums;
+}
+
+Winners gaussian_winners(const Surroundings& around, std::span<const std::vector<uint64_t>, 3> along)
+{
+    Winners winners(around);
+    for (const uint8_t group : around.held) {
+        Weights weights(around.groups.size());
+        std::ranges::transform(around.groups, weights.begin(), [&](uint8_t each) { return uint64_t(each == group); });
+        VoxelBox box = around.box;
+        for (int axis = 0; axis < 3; ++axis) weights = blurred(weights, box, around.core, axis, along[size_t(axis)]);
+        for (size_t voxel = 0; voxel < weights.size(); ++voxel) winners.offer(voxel, group, weights[voxel]);
+    }
+    return winners;
+}
+
+/// The groups of which one must be in the kernel of a voxel that changes.
+GroupSet chosen_by(const SmoothOp& op)
+{
+    GroupSet chosen;
+    if (op.groups.empty()) chosen.set();
+    for (const uint8_t group : op.groups) chosen[group] = true;
+    return chosen;
+}
+
+}  // namespace
+
+void perform(const SmoothOp& op, MaskEdit& edit, const Progress& progress)
+{
+    const Size3 kernel = kernel_of(op, edit);
+    const std::set<int64_t> around_painted = bricks_around(edit.mask(), kernel);
+    const std::vector<int64_t> bricks(around_painted.begin(), around_painted.end());
+    const std::vector<KernelRow> ball = ball_of(op, kernel, edit);
+    const GroupSet chosen = chosen_by(op);
+    std::array<std::vector<uint64_t>, 3> along;
+    for (int axis = 0; axis < 3; ++axis)
+        along[size_t(axis)] = gaussian_along(edit.input().volume.spacing[axis], op.distance, kernel[axis]);
+    for_each_brick(bricks, progress, [&](int64_t brick) {
+        if (!edit.may_change(brick)) return;
+        const Surroundings around = surroundings_of(brick, kernel, edit);
+        const auto is_chosen = [&](uint8_t group) { return chosen[group]; };
+        if (around.held.size() == 1 || std::ranges::none_of(around.held, is_chosen)) return;
+        const Winners winners =
+            op.method == SmoothOp::Method::median ? median_winners(around, ball) : gaussian_winners(around, along);
+        MaskBrick wanted = edit.read(brick);
+        const Size3 extent = around.core.size();
+        for (size_t i = 0; i < winners.groups().size(); ++i) {
+            uint8_t& voxel = wanted[size_t(index_of(position_of(int64_t(i), extent), Size3(BRICK_SIDE)))];
+            const uint8_t winner = winners.groups()[i];
+            if (chosen[voxel] || chosen[winner]) voxel = winner;
+        }
+        edit.want(brick, wanted);
+    });
+}
+
+}  // namespace shvr
