@@ -346,6 +346,17 @@ class OperationsOnGroups(CliTest):
             {"op": "smooth", "distance": 1.5, "groups": [6, 7], "method": "gaussian"}, expect_groups(_7=19)])
         self.annotate([{"op": "smooth", "distance": 1.5, "groups": [6]}, expect_groups(_6=0, _7=19)])   # is empty
 
+    def test_lines_of_filling_between_slices(self):
+        self.prepare()
+        slices = [{"op": "threshold", "group": 7, "from": 0, "to": 255, "box": [2, 2, z, 5, 5, z + 1]} for z in (1, 9)]
+        self.annotate(slices + [
+            {"op": "fill_between", "group": 7}, expect_groups(_7=81), {"op": "undo"}, expect_groups(_7=18),
+            {"op": "fill_between", "group": 7, "axis": "x"}, expect_groups(_7=18),
+            {"op": "fill_between", "group": 7, "axis": "z", "box": [0, 0, 4, 40, 20, 6]}, expect_groups(_7=36)])
+        self.assertIn('key axis is "w"; expected one of "x", "y", "z"',
+                      self.refused({"op": "fill_between", "group": 7, "axis": "w"}))
+        self.annotate([{"op": "fill_between", "group": 9}, expect_groups(_7=36, _9=0)])   # is empty
+
     def test_mask_from_trace(self):
         self.prepare()
         self.annotate([

@@ -204,6 +204,45 @@ DenseGroups wanted_by(const SmoothOp& op, DenseGroups dense, const DenseVolume& 
     return dense;
 }
 
+/// The distance in a slice to the nearest voxel that is in the group or, from inside, to the nearest that is not, which
+/// is then below 0; beyond the volume none is.
+double signed_distance(const DenseGroups& dense, const Size3& voxel, int axis, int64_t group, const glm::dvec3& spacing)
+{
+    const auto is_in = [&](const Size3& at) { return dense.contains(at) && dense.at(at) == group; };
+    const bool is_inside = is_in(voxel);
+    double best = 1e300;
+    Size3 lower(-1), size = dense.size + int64_t{2};
+    lower[axis] = voxel[axis];
+    size[axis] = 1;
+    for_each_voxel(size, [&](const Size3& step) {
+        const Size3 other = lower + step;
+        if (is_in(other) != is_inside) best = std::min(best, glm::length(glm::dvec3(other - voxel) * spacing));
+    });
+    return is_inside ? -best : best;
+}
+
+DenseGroups wanted_by(const FillBetweenOp& op, DenseGroups dense, const DenseVolume& volume)
+{
+    const DenseGroups before = dense;
+    const int axis = int(op.axis);
+    std::vector<bool> is_painted(size_t(dense.size[axis]));
+    for_each_voxel(dense.size, [&](const Size3& voxel) {
+        if (before.at(voxel) == op.group) is_painted[size_t(voxel[axis])] = true;
+    });
+    for_each_voxel(dense.size, [&](const Size3& voxel) {
+        Size3 from = voxel, to = voxel;
+        while (from[axis] >= 0 && !is_painted[size_t(from[axis])]) --from[axis];
+        while (to[axis] < dense.size[axis] && !is_painted[size_t(to[axis])]) ++to[axis];
+        if (from[axis] < 0 || to[axis] == dense.size[axis] || from == to) return;
+        const double before_it = signed_distance(before, from, axis, op.group, volume.spacing),
+                     after_it = signed_distance(before, to, axis, op.group, volume.spacing);
+        const double share = double(voxel[axis] - from[axis]) / double(to[axis] - from[axis]);
+        if (before_it + share * (after_it - before_it) <= 1e-9 * (std::abs(before_it) + std::abs(after_it)))
+            dense.at(voxel) = uint8_t(op.group);
+    });
+    return dense;
+}
+
 /// The least of distance minus radius over the balls on the way from a to b, by golden sections: both are convex.
 double outside_by(const glm::dvec3& point, const TraceGraph& trace, const TraceInternode& internode)
 {

@@ -56,6 +56,22 @@ struct FillHolesOp {
     OperationLimits limits{};
 };
 
+/// Fills between slices that were painted, such as every tenth one: between each two neighbouring slices with voxels of
+/// the group, shapes go over into each other by their signed distances. A slice between holds all voxels that both
+/// shapes have, and none that neither has; so parts that neither share a voxel nor touch are not joined.
+struct FillBetweenOp {
+    enum class Axis { x, y, z };
+    int64_t group = 1;
+    Axis axis = Axis::z;  ///< across the slices
+    OperationLimits limits{};
+};
+inline constexpr Spelling<FillBetweenOp::Axis> SLICING_AXES[] = {
+    {FillBetweenOp::Axis::x, "x"}, {FillBetweenOp::Axis::y, "y"}, {FillBetweenOp::Axis::z, "z"}};
+constexpr std::span<const Spelling<FillBetweenOp::Axis>> spellings_of(FillBetweenOp::Axis)
+{
+    return SLICING_AXES;
+}
+
 /// Operations by distance, in the unit of the volume's spacing, between centres of voxels; a distance is exact and
 /// inclusive. Beyond the volume's border is neither the group nor anything else.
 struct GrowOp {  ///< gives the group all voxels within the distance
@@ -209,6 +225,12 @@ inline constexpr auto OPERATIONS = std::tuple{
                            }),
     operation<FillHolesOp>({"fill_holes", "Fill holes", "fills what a group encloses on all sides"},
                            [](auto& f, FillHolesOp& op) { GROUP_FIELD(f, op.group); }),
+    operation<FillBetweenOp>(
+        {"fill_between", "Fill between slices", "fills the gaps between painted slices of a group"},
+        [](auto& f, FillBetweenOp& op) {
+            GROUP_FIELD(f, op.group);
+            f.choice("axis", op.axis, {"the axis across the slices"});
+        }),
     operation<GrowOp>({"grow", "Grow", "gives a group all voxels within a distance of it"}, DISTANCE_FIELDS),
     operation<ShrinkOp>({"shrink", "Shrink", "erases what is within a distance of the outside of a group"},
                         DISTANCE_FIELDS),

@@ -21,6 +21,7 @@ bool needs_intensities(const GroupOperation& operation);
 void perform(const CombineOp& op, MaskEdit& edit, const Progress& progress);
 void perform(const IslandsOp& op, MaskEdit& edit, const Progress& progress);
 void perform(const FillHolesOp& op, MaskEdit& edit, const Progress& progress);
+void perform(const FillBetweenOp& op, MaskEdit& edit, const Progress& progress);
 void perform(const ThresholdOp& op, MaskEdit& edit, const Progress& progress);
 void perform(const GrowOp& op, MaskEdit& edit, const Progress& progress);
 void perform(const ShrinkOp& op, MaskEdit& edit, const Progress& progress);

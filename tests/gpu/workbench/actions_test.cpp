@@ -46,7 +46,9 @@ constexpr const char *NODE = R"({"op":"node","at":[10,12,14],"radius":2,"group":
 
 constexpr const char
     *HOLLOW_BALL = R"({"op":"paint","brush":"fill","group":3,"threshold":-9,"radius":4,"path":[[20.5,18.5,16.5]]})",
-    *HOLE = R"({"op":"paint","brush":"fill","group":0,"threshold":-9,"radius":1,"path":[[20.5,18.5,16.5]]})";
+    *HOLE = R"({"op":"paint","brush":"fill","group":0,"threshold":-9,"radius":1,"path":[[20.5,18.5,16.5]]})",
+    *BALL = R"({"op":"paint","brush":"fill","group":3,"threshold":-9,"radius":2,"path":[[14.5,18.5,16.5]]})",
+    *NEXT_BALL = R"({"op":"paint","brush":"fill","group":3,"threshold":-9,"radius":2,"path":[[24.5,18.5,16.5]]})";
 constexpr const char *SLICES = R"({"op":"set","values":{"view":{"arrangement":"slices"}}})",
                      *CLOSER = R"({"op":"zoom","pane":1,"pixel":[10,12],"factor":3})";
 
@@ -115,6 +117,7 @@ const Row ROWS[] = {
     {R"({"op":"islands","group":3,"keep":"at_least","voxels":100000})", "saved, undo, voxels", {STROKE}},
     {R"({"op":"threshold","group":3,"from":60,"to":255,"box":[0,0,0,20,20,20]})", "saved, undo, voxels"},
     {R"({"op":"fill_holes","group":3})", "saved, undo, voxels", {HOLLOW_BALL, HOLE}},
+    {R"({"op":"fill_between","group":3,"axis":"x"})", "saved, undo, voxels", {BALL, NEXT_BALL}},
     {R"({"op":"grow","group":3,"distance":2.5})", "saved, undo, voxels", {HOLLOW_BALL}},
     {R"({"op":"shrink","group":3,"distance":2.5})", "saved, undo, voxels", {HOLLOW_BALL}},
     {R"({"op":"open_group","group":3,"distance":2.5})", "saved, undo, voxels", {HOLLOW_BALL}},
