@@ -19,18 +19,19 @@ constexpr ImGuiWindowFlags BANNER = ImGuiWindowFlags_NoDecoration | ImGuiWindowF
                                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize |
                                     ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
 
-/// Lists recovered or set-aside work, until dismissed. Returns its height.
-float recovered_banner(const Model& model, const glm::vec2& begin, float width, Actions& actions)
+/// Begins a banner with its upper left corner at `begin`.
+void begin_banner(const char* name, const glm::vec2& begin, float width)
 {
     ImGui::SetNextWindowPos({begin.x, begin.y});
     ImGui::SetNextWindowSize({std::max(width, 1.0f), 0.0f});
     ImGui::PushStyleColor(ImGuiCol_WindowBg, color_of(ColorRole::notice));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0.0f);
-    ImGui::Begin("Recovered", nullptr, BANNER);
-    if (ImGui::Button("Dismiss")) actions.push_back(DismissNotices{});
-    ImGui::PushTextWrapPos(0.0f);
-    for (const std::string& text : model.recovered) ImGui::TextUnformatted(text.c_str());
-    ImGui::PopTextWrapPos();
+    ImGui::Begin(name, nullptr, BANNER);
+}
+
+/// Ends it, and returns its height.
+float end_banner()
+{
     const float height = ImGui::GetWindowHeight();
     ImGui::End();
     ImGui::PopStyleVar();
@@ -38,14 +39,21 @@ float recovered_banner(const Model& model, const glm::vec2& begin, float width, 
     return height;
 }
 
+/// Lists recovered or set-aside work, until dismissed. Returns its height.
+float recovered_banner(const Model& model, const glm::vec2& begin, float width, Actions& actions)
+{
+    begin_banner("Recovered", begin, width);
+    if (ImGui::Button("Dismiss")) actions.push_back(DismissNotices{});
+    ImGui::PushTextWrapPos(0.0f);
+    for (const std::string& text : model.recovered) ImGui::TextUnformatted(text.c_str());
+    ImGui::PopTextWrapPos();
+    return end_banner();
+}
+
 /// Draws the banner in the upper left corner of the graphics window, as wide as needed. Returns its height.
 float read_only_banner(const Model& model, const glm::vec2& begin, float width, Actions& actions)
 {
-    ImGui::SetNextWindowPos({begin.x, begin.y});
-    ImGui::SetNextWindowSize({std::max(width, 1.0f), 0.0f});
-    ImGui::PushStyleColor(ImGuiCol_WindowBg, color_of(ColorRole::notice));
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0.0f);
-    ImGui::Begin("Read only", nullptr, BANNER);
+    begin_banner("Read only", begin, width);
     const bool is_outside = !model.outside.empty();
     if (ImGui::Button("Work on a copy")) actions.push_back(WorkOnCopy{});
     ImGui::SameLine();
@@ -57,21 +65,13 @@ float read_only_banner(const Model& model, const glm::vec2& begin, float width, 
                 is_outside ? "this session writes files outside its folder:" : "open for writing in", int(why.size()),
                 why.data());
     ImGui::PopTextWrapPos();
-    const float height = ImGui::GetWindowHeight();
-    ImGui::End();
-    ImGui::PopStyleVar();
-    ImGui::PopStyleColor();
-    return height;
+    return end_banner();
 }
 
 /// Says that the open file looks like annotation, and offers to load it as such. Returns its height.
 float labels_banner(const Model& model, const glm::vec2& begin, float width, Actions& actions)
 {
-    ImGui::SetNextWindowPos({begin.x, begin.y});
-    ImGui::SetNextWindowSize({std::max(width, 1.0f), 0.0f});
-    ImGui::PushStyleColor(ImGuiCol_WindowBg, color_of(ColorRole::notice));
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0.0f);
-    ImGui::Begin("Labels", nullptr, BANNER);
+    begin_banner("Labels", begin, width);
     if (ImGui::Button("Open its scan...")) ask_for_scan_of_labels(model);
     ImGui::SameLine();
     if (ImGui::Button("Dismiss")) actions.push_back(DismissNotices{});
@@ -82,11 +82,7 @@ float labels_banner(const Model& model, const glm::vec2& begin, float width, Act
         "there as the mask.",
         model.session.volume_path.filename().c_str(), int(why.size()), why.data());
     ImGui::PopTextWrapPos();
-    const float height = ImGui::GetWindowHeight();
-    ImGui::End();
-    ImGui::PopStyleVar();
-    ImGui::PopStyleColor();
-    return height;
+    return end_banner();
 }
 
 void question_of_belief(const Model& model, Actions& actions)
