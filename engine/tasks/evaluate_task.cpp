@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Maps each group in a file to the group that its voxels count as.
+/// Maps each group number of a mask file to the group number under which its voxels are scored.
 struct GroupMap : std::array<uint8_t, 256> {
     GroupMap() { std::iota(begin(), end(), uint8_t{0}); }
 };
@@ -64,7 +64,7 @@ std::string groups_in_words(const std::map<uint8_t, int64_t>& voxels)
     return text;
 }
 
-/// Refuses a project with a mask. Only a project imported from a mask, without its own mask, has groups as voxels.
+/// Refuses a project that has a mask file: the voxels of its volume are intensities then. `evaluate` needs groups.
 void expect_no_annotated_project(const fs::path& path)
 {
     std::error_code ignored;
@@ -151,7 +151,7 @@ private:
         return mask_of(space->size, load_mask(path, space->size));
     }
 
-    /// Computes the Dice scores of two bare masks, whose shape may be unknown.
+    /// Computes the Dice scores of two bare masks: files without a header, so that their shapes may be unknown.
     Dice dice_of_files(const GroupMap& groups_of_truth)
     {
         const Progress progress = reporter_.begin("comparing masks");

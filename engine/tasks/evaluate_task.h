@@ -11,10 +11,10 @@ struct EvaluateTask {
     static constexpr const char* TITLE = "Compare with a reference";
 
     std::filesystem::path truth_mask, mask, truth_trace, trace;
-    std::filesystem::path volume;           ///< gives all inputs their size, spacing and unit, if no file states these
+    std::filesystem::path volume;           ///< size, spacing and unit of inputs whose files do not state these
     std::vector<std::string> truth_groups;  ///< "FROM=TO"
-    std::optional<double> slack;            ///< slack in the unit of the volume; null: the longest side of a voxel
-    bool allows_incomplete = false;         ///< counts voxels of masks that cannot be read as unpainted
+    std::optional<double> slack;            ///< tolerance in the volume's unit; null: the longest side of a voxel
+    bool allows_incomplete = false;         ///< counts unreadable voxels of masks as unpainted
     std::vector<std::string> settings;      ///< "key=value" settings of a session, for `volume`
     OptionNames names = OptionNames::keys;  ///< how messages name options; not an option itself
 };

@@ -60,8 +60,8 @@ HeadSections sections_of(const ExportTask& task, const Groups& groups)
     });
 }
 
-/// Returns the rows of a flower head's pattern. Nothing unless sections are stated, or the trace has veins in the usual
-/// groups of adaxial veins or florets: other plants have no such rows.
+/// Returns the rows of a flower head's pattern. Returns an empty text for other plants, which have no such rows: if the
+/// user states no sections and no node belongs to a usual group of adaxial veins or florets.
 std::string pattern_text(const ExportTask& task, const AnnotationView& annotation, const TraceSpace& space)
 {
     const HeadSections sections = sections_of(task, annotation.groups);

@@ -1,7 +1,7 @@
 #pragma once
 // Exports annotation for other programs, for `shvr export`. File extensions determine the formats.
 //
-// The annotation is passed by reference. To export in the background while the user goes on painting, take an
+// `run` gets the annotation by reference. To export in the background while the user paints on, take an
 // `AnnotationSnapshot` on the main thread and export it on another. A snapshot shares the bricks of mask and offsets,
 // which are immutable (sparse_bricks.h), and copies only the tables of bricks and the trace (MEASURED.md).
 
@@ -47,9 +47,9 @@ struct AnnotationView {
     const TraceGraph& trace;
     const Groups& groups;
     std::string volume_hash{};            ///< as Session::volume_hash
-    std::filesystem::path project{};      ///< path as it was opened; for `labels`
-    std::filesystem::path volume_path{};  ///< as Session::volume_path; no output may replace it
-    std::filesystem::path trace_path{};   ///< path as in Session::trace_path; used in messages if there is no trace
+    std::filesystem::path project{};      ///< path that the user opened; for `labels`
+    std::filesystem::path volume_path{};  ///< see Session::volume_path; no output may replace it
+    std::filesystem::path trace_path{};   ///< see Session::trace_path; used in messages if there is no trace
     std::filesystem::path mask_path{};    ///< the mask whose header an export keeps (mask_segments.h); may be missing
 };
 
@@ -84,8 +84,8 @@ struct ExportResult {
 void check(const ExportTask& task);
 void check(const ExportTask& task, const AnnotationView& annotation);
 
-/// Checks, then writes each file atomically; files written before a failure stay. Calls `wrote` after each
-/// file.
+/// Checks the task, then writes each file atomically, and calls `wrote` after each. Files written before a failure
+/// stay.
 ExportResult run(const ExportTask& task, const AnnotationView& annotation, ProgressReporter& reporter,
                  const std::function<void(const ExportResult& so_far)>& wrote = {});
 

@@ -40,7 +40,7 @@ std::optional<FileContent> content_of_json(const fs::path& path)
     return std::nullopt;
 }
 
-/// Recognises lines of the thesis's traces and of SWC; neither format has a magic number.
+/// Recognises lines of the thesis's trace format and of SWC, since neither format has a magic number.
 bool begins_like_a_trace(const std::string& begin)
 {
     const size_t line = begin.find_first_not_of(" \t\r\n");
@@ -50,7 +50,7 @@ bool begins_like_a_trace(const std::string& begin)
            (rest[0] >= '0' && rest[0] <= '9');
 }
 
-/// Returns the size of a voxel's offset in the thesis's format.
+/// Returns the size in bytes of one voxel's offset in the thesis's format.
 int64_t bytes_of_offset(VoxelType type)
 {
     return bytes_of(type) == 1 ? 2 : 4;
@@ -66,7 +66,7 @@ std::optional<FileContent> content_of_bare(const fs::path& path, const VolumeInf
         if (bytes == voxels * bytes_of_offset(open->type)) return FileContent::offsets;
     }
     const std::string extension = lower_case(path.extension().string());
-    if (extension == ".mask") return FileContent::mask;  // a mask of another size; its reader refuses it
+    if (extension == ".mask") return FileContent::mask;  // even if its size differs: the reader refuses it then
     if (extension == ".offset") return FileContent::offsets;
     return std::nullopt;
 }

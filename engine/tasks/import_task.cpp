@@ -55,7 +55,7 @@ void refuse_own_source(const ImportTask& task)
     }
 }
 
-/// Warns if the volume looks like annotation of a scan. The project knows its statistics, so scans are not read again.
+/// Warns if the volume looks like annotation of a scan. Uses the project's statistics, so that no voxel is read again.
 void warn_of_labels(const ImportTask& task, const Gaps& gaps, ImportReport& report)
 {
     if (task.labels || !gaps.empty() || stated_content(task.volume)) return;  // a reader warns of what is stated
@@ -70,7 +70,7 @@ void warn_of_labels(const ImportTask& task, const Gaps& gaps, ImportReport& repo
                  option_name(task.names, "labels")));
 }
 
-/// Reports progress in two stages if voxels are reversed, since their range is found first; otherwise in one.
+/// Reports progress as one stage, or as two if voxels are reversed: reversal needs a first pass to find their range.
 class ImportListener {
 public:
     ImportListener(const ImportTask& task, VoxelType type, ProgressReporter& reporter)
@@ -88,7 +88,7 @@ public:
             reporter_.show(told.fraction, sentence(std::fixed, std::setprecision(rate < 10.0 ? 1 : 0), rate, " MB/s"),
                            told.seconds_left);
         } catch (const Stopped&) {
-            // The import itself polls for cancellation, and keeps finished chunks.
+            // Only keeps the exception inside: the import checks for cancellation by itself and keeps finished chunks.
         }
     }
 
@@ -189,7 +189,7 @@ ImportResult run(const ImportTask& task, ProgressReporter& reporter)
 {
     using Clock = std::chrono::steady_clock;
     check(task);
-    // Replacing a project also deletes its annotation, so no other process may be writing the annotation.
+    // Replacing a project also deletes its annotation, so no other process may be writing annotation there.
     const std::filesystem::path session = task.project / "shvr" / "session.json";
     const std::shared_ptr<Hold> hold = task.overwrite ? Hold::take(journal_beside(session), task.program) : nullptr;
     if (hold && !hold->doubtful().empty())

@@ -1,6 +1,6 @@
 #pragma once
-// Imports a volume as a project, for `shvr import`. The order is: crop, reverse, blur, downscale. A stopped import
-// keeps its finished chunks, and the same import resumes it. Any thread.
+// Imports a volume as a project, for `shvr import`. Voxels are cropped, reversed, blurred and downscaled in this order.
+// A stopped import keeps its finished chunks, and repeating the same import resumes it. Any thread.
 
 #include "engine/tasks/task_options.h"
 
@@ -22,10 +22,10 @@ struct ImportTask {
     bool overwrite = false;
     bool allows_incomplete = false;  ///< gives voxels that cannot be read the lowest value of their type, or NaN
     int threads = 0;
-    int64_t budget_host_mib = 0;  ///< memory that the import may take; 0: three quarters of the machine's memory
+    int64_t budget_host_mib = 0;  ///< memory that the import may use; 0: three quarters of the machine's memory
 
-    std::string program = "shvr import";    ///< shown to other processes that want the project being replaced
-    OptionNames names = OptionNames::keys;  ///< how messages name options; neither this nor `program` is an option
+    std::string program = "shvr import";    ///< shown to other processes that want the project meanwhile
+    OptionNames names = OptionNames::keys;  ///< how messages name options; not an option itself, nor is `program`
 };
 void fields(Fields& f, ImportTask& task);
 
@@ -35,9 +35,9 @@ struct ImportResult {
     double megabytes_per_second = 0.0;  ///< counts voxels of the project
 };
 
-/// Refuses options that contradict each other; reads nothing.
+/// Refuses options that contradict each other. Reads no file.
 void check(const ImportTask& task);
-/// Keeps a project that is replaced until the new one is complete. Fails if another process is writing that project.
+/// Keeps a replaced project until the new one is complete. Fails if another process is writing the project.
 ImportResult run(const ImportTask& task, ProgressReporter& reporter);
 
 }  // namespace shvr

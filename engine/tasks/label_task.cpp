@@ -29,7 +29,7 @@ std::string form_of(const fs::path& path)
     return is_in_project ? ".zarr" : lower_case(plain.extension().string());
 }
 
-/// Returns the folder that must exist before output: the parent of `path`, or the project if that is its "labels".
+/// Returns the folder that must already exist: the parent of `path`, or the image above a parent called "labels".
 fs::path folder_of(const fs::path& path)
 {
     fs::path folder = fs::absolute(path).lexically_normal();
@@ -39,7 +39,7 @@ fs::path folder_of(const fs::path& path)
     return folder.filename() == "labels" && !fs::exists(folder, ignored) ? folder.parent_path() : folder;
 }
 
-/// Writes one byte per voxel, as in masks.
+/// Writes labels as one byte per voxel, like a mask.
 void write_mask(const LabelTask& task, const VolumeSource& labels, const Progress& progress)
 {
     const VolumeInfo& info = labels.info();
@@ -123,7 +123,7 @@ void check(const LabelTask& task)
 
 void check(const LabelTask& task, const VolumeSource& source, const fs::path& volume)
 {
-    // A sparse volume can have more labelled voxels than can be written to a file.
+    // A sparse volume can have more voxels than fit into a file of a dense format.
     constexpr int64_t MAX_VOXELS_WRITTEN = int64_t{1} << 44;
     check(task);
     check_output_is_not(volume, task.output);

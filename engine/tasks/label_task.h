@@ -33,11 +33,11 @@ struct LabelResult {
 
 /// Checks options and names.
 void check(const LabelTask& task);
-/// Also checks whether the output can be written for such a volume: for a sparse volume, an OME-Zarr needs only the
-/// stored blocks, whereas all other formats contain every voxel. `volume`: the volume's file, which the output may not
-/// replace; may be empty.
+/// Also checks whether `source` can be written in the format of the output: an OME-Zarr of a sparse volume needs only
+/// the stored blocks, whereas all other formats contain every voxel. `volume`: the volume's file, which the output may
+/// not replace; may be empty.
 void check(const LabelTask& task, const VolumeSource& source, const std::filesystem::path& volume);
-/// `source`: includes density offsets, if any. `name`: the volume's name, for the progress line.
+/// `source`: the volume, with its density offsets added. `name`: the volume's name, for the progress line.
 LabelResult run(const LabelTask& task, const VolumeSource& source, const std::string& name, ProgressReporter& reporter);
 
 }  // namespace shvr

@@ -1,6 +1,6 @@
 #pragma once
-// The options of tasks as JSON, for scripts and logs: {"mask": "out.tif", "space": "volume"}. Missing options keep
-// their defaults; unknown options are refused by name. Any thread.
+// Options of tasks as JSON, for scripts and logs: {"mask": "out.tif", "space": "volume"}. Missing options keep their
+// defaults; unknown options are refused by name. Any thread.
 
 #include "engine/jobs/progress_reporter.h"
 #include "engine/projects/import_volume.h"
@@ -9,11 +9,11 @@
 
 namespace shvr {
 
-/// How messages refer to an option: by its key ("break_loops"), or as on the command line ("--break-loops").
+/// How messages refer to an option: by its JSON key ("break_loops") or by its command-line spelling ("--break-loops").
 enum class OptionNames { keys, command_line };
 std::string option_name(OptionNames names, std::string_view key);
 
-/// `origin` names the text in messages; relative paths are relative to `folder`.
+/// Reads options. `origin` names the text in messages; relative paths are relative to `folder`.
 template <class Task>
 Task from_json(std::string_view text, const std::filesystem::path& folder, const std::string& origin)
 {
@@ -23,14 +23,14 @@ Task from_json(std::string_view text, const std::filesystem::path& folder, const
     return task;
 }
 
-/// Writes all options that have a value, on one line. Paths inside `folder` are written relative to it.
+/// Writes all options that have a value, on one line. Paths inside `folder` become relative to it.
 template <class Task>
 std::string to_json(Task task, const std::filesystem::path& folder)
 {
     return write_fields(folder, [&](Fields& f) { fields(f, task); });
 }
 
-/// Name, meaning, range and default of each option, for documentation and dialogs.
+/// Returns name, meaning, range and default of each option, for documentation and dialogs.
 template <class Task>
 std::vector<SessionKey> options_of()
 {
@@ -38,18 +38,18 @@ std::vector<SessionKey> options_of()
     return keys_of([&](Fields& f) { fields(f, task); });
 }
 
-/// The option "ome_zarr", a version of OME-Zarr or "automatic".
+/// Adds the option "ome_zarr": a version of OME-Zarr, or "automatic".
 void version_field(Fields& f, std::optional<OmeZarrVersion>& version, const char* automatic);
 
-/// The option "allow_incomplete": leaves out, counts and reports unreadable data, instead of ending the task.
+/// Adds the option "allow_incomplete": unreadable data is left out, counted and reported, instead of ending the task.
 void incomplete_field(Fields& f, bool& allows_incomplete, const char* counts_as);
-/// Returns the handling of unreadable data: refused, unless `allows_incomplete`.
+/// Returns how unreadable data is handled: refused, unless `allows_incomplete`.
 Gaps gaps_of(bool allows_incomplete, OptionNames names);
 
-/// The option "threads": number of worker threads, 0 ... 1024; 0: one per core.
+/// Adds the option "threads": number of worker threads, 0 ... 1024; 0: one per core.
 void threads_field(Fields& f, int& threads);
 void check_threads(int threads, OptionNames names);
-/// An array of non-empty texts; an empty array is not written.
+/// Adds an option that is an array of non-empty texts. An empty array is not written.
 void texts_field(Fields& f, std::string_view name, std::vector<std::string>& texts, const About& about);
 
 }  // namespace shvr

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Returns the extension of a file that may be a slice, in one spelling per format; empty for other files.
+/// Returns the extension of a file that may be a slice, with one spelling per format. Returns an empty text otherwise.
 std::string slice_extension(const fs::path& path)
 {
     const std::string extension = lower_case(path.extension().string());
@@ -27,8 +27,8 @@ std::string slice_extension(const fs::path& path)
     return std::ranges::find(SLICES, extension) != std::end(SLICES) ? extension : std::string();
 }
 
-/// Whether `output` lies, or would lie, directly in a folder of slices and has their extension. A Zarr image may
-/// contain other images; in any other folder, each file with that extension is a slice.
+/// Whether `output` would become a slice of a volume: it lies directly in `folder` and has the extension of the slices
+/// there. Folders of Zarr images are exempt, since such an image may contain other images.
 bool is_among_slices(const fs::path& folder, const fs::path& output)
 {
     std::error_code ignored;
