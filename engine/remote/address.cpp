@@ -29,7 +29,7 @@ void append_encoded(std::string& text, char c)
     text += {'%', DIGITS[byte >> 4], DIGITS[byte & 15]};
 }
 
-/// Encodes the characters that a path of a URL may not contain. Bytes that are encoded already stay so.
+/// Percent-encodes the characters that a URL's path may not contain. Leaves bytes that are already encoded unchanged.
 std::string encoded_path(std::string_view path)
 {
     constexpr std::string_view ALLOWED = "-._~!$&'()*+,;=:@/%";  // RFC 3986, section 3.3
@@ -53,7 +53,7 @@ bool has_dot_segments(std::string_view path)
     return false;
 }
 
-/// A host name, or an address in digits, perhaps with a port.
+/// Whether `host` is a host name or a numeric address, with or without a port.
 bool is_host(std::string_view host)
 {
     const bool is_version_6 = host.starts_with('[');
@@ -71,7 +71,7 @@ bool is_host(std::string_view host)
     return host[host.size() - port.size() - 1] == ':' && number && *number >= 1 && *number <= 65535;
 }
 
-/// Queries by the text of their address. A credential: never printed, never written.
+/// The queries of addresses, by address without query. A query is a credential and is never printed or written to disk.
 class Queries {
 public:
     void keep(const std::string& address, const std::string& query)

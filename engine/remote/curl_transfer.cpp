@@ -17,10 +17,10 @@ namespace shvr {
 namespace {
 
 constexpr size_t MAX_HEADER_BYTES = size_t{64} << 10;
-/// Bytes read of the body of an error, so that its connection can be used again.
+/// The body of an error is read up to this size, since a connection can be reused only if its response was read fully.
 constexpr int64_t MAX_ERROR_BYTES = int64_t{16} << 10;
 
-/// A file of certificates named by the user; null: those of the system.
+/// Returns the file of certificates that the user has set; null: those of the system.
 const char* certificates()
 {
     for (const char* const name : {"CURL_CA_BUNDLE", "AWS_CA_BUNDLE", "SSL_CERT_FILE"})
@@ -63,7 +63,7 @@ size_t take_header(char* data, size_t size, size_t count, void* user)
     const std::string_view line(data, size * count);
     transfer.header_bytes += line.size();
     if (transfer.header_bytes > MAX_HEADER_BYTES) return 0;
-    if (line.starts_with("HTTP/")) {  // after an interim response (100, 103) or a proxy's
+    if (line.starts_with("HTTP/")) {  // new response; the previous one was interim (100, 103) or a proxy's
         response.etag = response.location = response.region = {};
         response.range_first = response.object_bytes = {};
         response.retry_after_s = 0.0;
@@ -114,7 +114,7 @@ bool may_pass(CURLcode code)
     }
 }
 
-/// A reason for the user. Curl's own text names hosts at most, never a query.
+/// Returns the reason of a failure, for the user. Curl's own error text may name a host, but never a query.
 std::string reason_of(const CurlTransfer& transfer, CURLcode code)
 {
     const Deadlines& limits = deadlines();
@@ -185,7 +185,7 @@ void set_request(CurlTransfer& transfer)
         set(handle, CURLOPT_AWS_SIGV4, ("aws:amz:" + transfer.keys.region + ":s3").c_str());
         set(handle, CURLOPT_USERNAME, transfer.keys.id.c_str());
         set(handle, CURLOPT_PASSWORD, transfer.keys.secret.c_str());
-        // The hash of an empty body, which curl 7.88 does not send by itself; it signs all headers given here.
+        // The hash of an empty body, which S3 requires and curl 7.88 does not add. Curl signs all headers added here.
         add_header(transfer, "x-amz-content-sha256: e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
         if (!transfer.keys.token.empty()) add_header(transfer, "x-amz-security-token: " + transfer.keys.token);
     }
@@ -201,13 +201,13 @@ void set_request(CurlTransfer& transfer)
     set(handle, CURLOPT_OPENSOCKETDATA, static_cast<void*>(&transfer));
     set(handle, CURLOPT_ERRORBUFFER, transfer.error.data());
     set(handle, CURLOPT_PRIVATE, static_cast<void*>(&transfer));
-    // A connection that was opened for another request may lead anywhere.
+    // An existing connection, opened for another request, was not checked and may lead to a local server.
     if (request.refuses_local) set(handle, CURLOPT_FRESH_CONNECT, 1L);
 }
 
 }  // namespace
 
-/// The environment names a proxy, whose address then says nothing about the server's.
+/// Whether the environment sets a proxy. The address of a connection may then be the proxy's, not the server's.
 bool may_use_proxy()
 {
     for (const char* const name : {"http_proxy", "https_proxy", "HTTPS_PROXY", "all_proxy", "ALL_PROXY"})
@@ -234,7 +234,7 @@ void conclude(CurlTransfer& transfer, CURLcode code)
     char* address = nullptr;
     curl_easy_getinfo(transfer.handle, CURLINFO_RESPONSE_CODE, &status);
     curl_easy_getinfo(transfer.handle, CURLINFO_PRIMARY_IP, &address);
-    // Where the body of an error is too long to read, its status is what counts.
+    // The body of an error may be too long to read; the status alone is sufficient then.
     const bool is_error = code == CURLE_WRITE_ERROR && !response.is_truncated && status >= 300 &&
                           transfer.header_bytes <= MAX_HEADER_BYTES;
     if (code == CURLE_OK || is_error)

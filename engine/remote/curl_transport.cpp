@@ -1,5 +1,5 @@
-// The transport by libcurl: a thread runs all transfers of the process, so that they share connections (several
-// requests at a time on one with HTTP/2) and names that were looked up; the threads that ask wait for it.
+// The transport by libcurl. One thread runs all transfers of the process, so that they share connections (with HTTP/2
+// one connection carries several requests at once) and DNS results. The requesting threads wait for it.
 
 #include <algorithm>
 #include <chrono>
@@ -21,7 +21,7 @@ namespace shvr {
 namespace {
 
 constexpr long CONNECTIONS_TO_HOST = 16, CONNECTIONS = 32;
-/// Interval at which a waiting thread asks whether it should still wait.
+/// Interval at which a waiting thread checks whether waits are over.
 constexpr std::chrono::milliseconds TICK{20};
 
 class CurlTransport final : public Transport {
@@ -47,7 +47,7 @@ public:
 
     std::vector<RemoteResponse> perform(std::span<const RemoteRequest> requests) const override
     {
-        static_cast<void>(deadlines());  // reports wrong variables on the thread that asks
+        static_cast<void>(deadlines());  // reports invalid variables on the requesting thread
         std::vector<std::shared_ptr<CurlTransfer>> transfers;
         for (const RemoteRequest& request : requests) {
             transfers.push_back(std::make_shared<CurlTransfer>());
@@ -86,7 +86,7 @@ private:
             int running = 0;
             curl_multi_perform(multi_, &running);
             finish_some();
-            // Wakes up by itself to see abandoned transfers that no byte arrives for.
+            // Times out at intervals, to notice abandoned transfers even if no data arrives.
             curl_multi_poll(multi_, nullptr, 0, running > 0 ? 100 : 1000, nullptr);
         }
         while (!running_.empty()) end(running_.front(), CURLE_ABORTED_BY_CALLBACK);
@@ -109,7 +109,7 @@ private:
         int left = 0;
         while (const CURLMsg* const message = curl_multi_info_read(multi_, &left)) {
             if (message->msg != CURLMSG_DONE) continue;
-            const CURLcode code = message->data.result;  // a copy: the message dies with its handle
+            const CURLcode code = message->data.result;  // a copy: the message is invalid once its handle is removed
             const CURL* const handle = message->easy_handle;
             const auto found =
                 std::ranges::find_if(running_, [&](const auto& transfer) { return transfer->handle == handle; });
@@ -117,7 +117,7 @@ private:
         }
     }
 
-    /// Takes a copy of the pointer, since the list that holds it changes.
+    /// Takes the pointer by value: a reference would point into running_, from which the transfer is erased.
     void end(std::shared_ptr<CurlTransfer> transfer, CURLcode code)
     {
         std::erase(running_, transfer);

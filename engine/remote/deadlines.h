@@ -1,6 +1,6 @@
 #pragma once
-// Time limits and numbers of tries of requests. Set by the environment, in seconds: SHVR_REMOTE_CONNECT_S,
-// SHVR_REMOTE_STALL_S, SHVR_REMOTE_TOTAL_S; and SHVR_REMOTE_TRIES. Any thread may call this.
+// Time limits and numbers of attempts of requests, from the environment: SHVR_REMOTE_CONNECT_S, SHVR_REMOTE_STALL_S and
+// SHVR_REMOTE_TOTAL_S, in seconds, and SHVR_REMOTE_TRIES. Any thread may call this.
 
 #include <cstdint>
 
@@ -10,12 +10,12 @@ struct Deadlines {
     double connect_s = 15.0;  ///< for name, connection and TLS
     double stall_s = 20.0;    ///< without STALL_BYTES_PER_S on average
     double total_s = 600.0;   ///< for one request
-    int64_t tries = 5;        ///< most tries of a request whose failure may be temporary
+    int64_t tries = 5;        ///< maximum number of attempts, if failures may be temporary
 };
 /// A transfer that is slower counts as stalled.
 inline constexpr int64_t STALL_BYTES_PER_S = 256;
 
-/// Read from the environment once. Fails if a variable is not a number within its limits.
+/// Reads the environment once. Fails if a variable is not a number within its limits.
 const Deadlines& deadlines();
 
 }  // namespace shvr

@@ -1,5 +1,5 @@
 #pragma once
-// Addresses of this machine and its link, to which a redirect from a public host must not lead. Any thread.
+// Addresses of this machine and of its local link. A redirect from a public host must not lead to them. Any thread.
 
 #include <string>
 
@@ -7,9 +7,9 @@ struct sockaddr;
 
 namespace shvr {
 
-/// Whether an IP address in digits, or a host of a URL, is certainly a loopback, link-local or unspecified address.
+/// Whether a numeric IP address, or the host of a URL, is certainly a loopback, link-local or unspecified address.
 bool is_local_host(std::string host);
-/// Likewise for the address of a socket of `bytes` bytes.
+/// Likewise for a socket address of `bytes` bytes.
 bool is_local_address(const sockaddr& address, size_t bytes);
 
 }  // namespace shvr

@@ -25,18 +25,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// First bytes of a file; its last digit is the version of the layout.
+/// The first bytes of a file. The last digit is the version of the format.
 constexpr std::array<char, 8> MAGIC{'S', 'H', 'V', 'R', 'O', 'B', 'J', '1'};
 constexpr int64_t MAX_TEXT_BYTES = int64_t{64} << 10;
 constexpr int64_t STANDARD_MIB = 4096, MAX_MIB = int64_t{1} << 24;
 constexpr const char* TEMPORARY = ".tmp";
-/// Temporary files of killed processes are removed at this age.
+/// Temporary files of this age are considered left over from killed processes, and removed.
 constexpr auto STALE = std::chrono::hours(1);
 
-/// The head of a file, which name, ETag and bytes follow.
+/// The header of a file. The object's name, its ETag and its bytes follow, in this order.
 struct Head {
     std::array<char, 8> magic;
-    uint64_t checksum;  ///< checksum of all that follows this number
+    uint64_t checksum;  ///< of everything in the file after this member
     int64_t object_bytes, bytes;
     uint32_t name_bytes, etag_bytes;
     uint32_t is_missing, unused;
@@ -75,7 +75,7 @@ std::vector<std::byte> content_of(const std::string& name, const CachedObject& o
     return content;
 }
 
-/// Null if the content is damaged, or that of another name.
+/// Returns null if the content is damaged or belongs to an object with another name.
 std::optional<CachedObject> object_of(std::span<const std::byte> content, const std::string& name)
 {
     Head head{};
@@ -111,7 +111,7 @@ struct KeptFile {
     timespec used;
 };
 
-/// The files of the cache, the least recently used first, without temporary ones; stale ones of these are removed.
+/// Returns the files of the cache, least recently used first. Skips temporary files, and removes those that are stale.
 std::vector<KeptFile> files_in(const fs::path& folder)
 {
     std::vector<KeptFile> files;
@@ -137,7 +137,7 @@ std::vector<KeptFile> files_in(const fs::path& folder)
 }  // namespace
 
 ObjectCache::ObjectCache(fs::path folder, int64_t budget_bytes)
-    // The budget is looked at when the first object is kept: other processes may have filled it.
+    // Starts with a full budget of unchecked bytes, so that the first `keep` measures what other processes have stored.
     : folder_(std::move(folder)), budget_bytes_(folder_.empty() ? 0 : budget_bytes), unchecked_bytes_(budget_bytes)
 {}
 
@@ -179,7 +179,7 @@ void ObjectCache::keep(const std::string& name, const CachedObject& object) cons
     std::error_code failed;
     fs::create_directories(path.parent_path(), failed);
     if (failed) return;
-    // Objects that needed a credential stay unreadable for other users.
+    // The folder is private, since other users must not read objects that needed a credential.
     static_cast<void>(::chmod(folder_.c_str(), S_IRWXU));
     const std::vector<std::byte> content = content_of(name, object);
     const std::string temporary = path.string() + TEMPORARY + sentence(::getpid(), "-", written_++);

@@ -1,7 +1,7 @@
 #pragma once
-// Objects that were read before, on disk: one file each, shared by all processes of a user, limited in bytes. A file
-// appears completely or not at all, and states a checksum: a damaged one is removed, and counts as absent. The least
-// recently used files are removed first. Any thread may call these.
+// A cache on disk of objects read before: one file per object, shared by all processes of a user, limited in bytes.
+// Files are written atomically and contain a checksum; a damaged file is removed and counts as absent. The least
+// recently used files are evicted first. Any thread may call these.
 
 #include <atomic>
 #include <cstdint>
@@ -22,17 +22,17 @@ struct CachedObject {
 
 class ObjectCache {
 public:
-    /// An empty folder, or a budget of 0: nothing is kept.
+    /// With an empty folder or a budget of 0, nothing is stored.
     ObjectCache(std::filesystem::path folder, int64_t budget_bytes);
 
-    /// `name`: identifies an object or a part of one, and contains no credential. Files are never larger than
-    /// `max_bytes`, or they count as absent.
+    /// Returns the object or part of an object called `name`, which contains no credential. A file larger than
+    /// `max_bytes` counts as absent.
     std::optional<CachedObject> find(const std::string& name, int64_t max_bytes) const;
-    /// Keeps an object. A failure, such as a full disk, only means that it is not kept.
+    /// Stores an object. After a failure, such as a full disk, the object is merely not stored.
     void keep(const std::string& name, const CachedObject& object) const;
 
-    /// Removes files, the least recently used first, until 90 % of the budget is not exceeded; does nothing if it is
-    /// not exceeded, or if another process is removing files.
+    /// If the files exceed the budget, removes the least recently used ones until 90 % of the budget remains in use.
+    /// Does nothing if another process is already removing files.
     void make_room() const;
 
 private:
@@ -40,12 +40,12 @@ private:
 
     std::filesystem::path folder_;
     int64_t budget_bytes_;
-    mutable std::atomic<int64_t> unchecked_bytes_;  ///< kept by this process since it last looked at the budget
+    mutable std::atomic<int64_t> unchecked_bytes_;  ///< bytes this process stored since it last measured the cache
     mutable std::atomic<uint64_t> written_ = 0;
 };
 
-/// The cache of this user: in SHVR_REMOTE_CACHE, or remote/ in the program's cache folder, of SHVR_REMOTE_CACHE_MIB
-/// (4096 unless set; 0: none). Fails if that is not a whole number within its limits.
+/// The cache of this user: in SHVR_REMOTE_CACHE, or else remote/ in the program's cache folder. SHVR_REMOTE_CACHE_MIB
+/// is its budget (default 4096; 0: no cache). Fails if that variable is not a whole number within its limits.
 const ObjectCache& object_cache();
 
 }  // namespace shvr

@@ -1,6 +1,6 @@
 #pragma once
-// Which redirects are followed: to http or https, but not from https to http, and to no address of this machine or its
-// link from a public host. Any thread may call this.
+// Decides which redirects are followed: those to http or https, but not from https to http, and not from a public host
+// to this machine or its local link. Any thread may call this.
 
 #include <string>
 
@@ -11,8 +11,8 @@ struct Redirect {
     bool refuses_local = false;  ///< the target must not be a loopback or link-local address
 };
 
-/// Returns where a response of the server at `from` leads by its header `location`. `is_from_local`: that server is on
-/// this machine or its link. Fails if the redirect must not be followed; messages name its host only.
+/// Returns the target of a redirect: the header `location` of a response from `from`. `is_from_local`: the server is on
+/// this machine or its local link. Fails if the redirect must not be followed; messages name only its host.
 Redirect redirect_of(const std::string& name, const std::string& from, const std::string& location, bool is_from_local);
 
 }  // namespace shvr

@@ -20,9 +20,9 @@ namespace {
 using State = RemoteObject::State;
 
 constexpr int MAX_REDIRECTS = 5;
-/// A server that asks for a longer pause is asked again after this time.
+/// Upper limit of a pause before a retry, even if the server asks for a longer one.
 constexpr double MAX_PAUSE_S = 30.0;
-/// Time during which kept objects are taken unasked after a server was not reached.
+/// After a server was unreachable, cached objects are used without asking it for this time.
 constexpr int64_t OFFLINE_MS = 30'000;
 
 bool asks_to_try_again(int status)
@@ -64,11 +64,11 @@ struct RemoteFolder::Asking {
     int64_t tries = 0;
     bool refuses_local = false;
     bool is_done = false;
-    bool was_unchanged = false;  ///< the cached object is still the server's
+    bool was_unchanged = false;  ///< whether the server confirmed that the cached object is current
     double pause_s = 0.0;        ///< before the next try
     std::optional<CachedObject> cached{};
 
-    /// Whether the server need only confirm what is kept.
+    /// Whether an object is cached with an ETag, so that the server need only confirm it.
     bool is_kept() const { return cached && !cached->is_missing && !cached->etag.empty(); }
     void end(State state, const std::string& failure = {})
     {

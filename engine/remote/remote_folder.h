@@ -1,10 +1,10 @@
 #pragma once
-// Reads objects below an address, by HTTP requests with retries and redirects. Nothing is listed or written there. Any
-// thread may call these; a thread waits for its own requests, until waits are over (engine/base/waits/waits.h).
+// Reads objects below an address by HTTP requests, with retries and redirects. Never lists or writes. Any thread may
+// call these; a thread blocks until its own requests are done or waits are over (engine/base/waits/waits.h).
 //
-// Objects are kept in a cache on disk (object_cache.h). A server is asked whether a kept object is still the same, by
-// its ETag, and then sends no bytes. If no server answers, the kept object is taken, and for half a minute all others
-// are taken without asking.
+// Objects are cached on disk (object_cache.h). A cached object is revalidated by its ETag: if it is unchanged, the
+// server sends no body. If no server answers, the cached object is used, and for half a minute all other cached objects
+// are used without asking the server.
 
 #include <atomic>
 #include <memory>
@@ -20,47 +20,47 @@
 namespace shvr {
 
 struct RemoteWant {
-    std::string key{};                ///< relative to the address; empty: the address itself
+    std::string key{};                ///< path relative to the address; empty: the address itself
     std::optional<ByteRange> part{};  ///< null: the whole object
-    int64_t max_bytes = 0;            ///< most bytes of a whole object; a part has exactly its own
+    int64_t max_bytes = 0;            ///< maximum size of a whole object; ignored for a part, whose size is known
 };
 
 struct RemoteObject {
     enum class State {
         found,
         missing,    ///< 404
-        forbidden,  ///< 401, 403: without the right to list, a bucket answers so for missing objects too
+        forbidden,  ///< 401, 403: also for missing objects of a bucket, if the user may not list it
         failed
     };
     State state = State::failed;
     std::vector<std::byte> bytes{};
     std::string etag{};
     int64_t object_bytes = -1;  ///< size of the whole object; below 0: unknown
-    std::string failure{};      ///< one sentence that names the object, unless found or missing
+    std::string failure{};      ///< one sentence that names the object; empty if `found` or `missing`
     bool is_unreached = false;  ///< failed before a server answered
-    bool is_offline = false;    ///< from the cache, since no server answered
+    bool is_offline = false;    ///< taken from the cache, since no server answered
 };
 
-/// Time between tries: twice as long after each, less a random part.
+/// Time between attempts: doubles after each one, and is shortened by a random part.
 struct RetryPace {
     double first_s = 0.2, most_s = 8.0;
 };
 
 class RemoteFolder {
 public:
-    /// `address`: the text of an address, without a query. Fails if it is no address that can be read.
+    /// `address`: an address without a query. Fails if the text is no address, or its scheme is not supported.
     explicit RemoteFolder(std::string address);
     /// `cache`: may be null; must outlive this object.
     RemoteFolder(std::string address, std::shared_ptr<const Transport> transport, RetryPace pace,
                  const ObjectCache* cache = nullptr);
 
-    /// The address of an object for messages, without a query.
+    /// Returns the address of an object for messages, without a query.
     std::string name_of(const std::string& key) const;
     const std::string& address() const { return address_; }
-    /// Whether requests carry keys or a query. Such objects must not be readable by others.
+    /// Whether requests carry keys or a query. Other users must not be able to read the cached objects then.
     bool is_private() const { return keys_.has_value() || !query_.empty(); }
 
-    /// Reads several objects in parallel, in the order of the wants. An object that cannot be read is no exception.
+    /// Reads several objects in parallel; returns them in the order of `wants`. An unreadable object does not throw.
     std::vector<RemoteObject> get(std::span<const RemoteWant> wants) const;
 
 private:
@@ -80,7 +80,7 @@ private:
     std::shared_ptr<const Transport> transport_;
     RetryPace pace_;
     const ObjectCache* cache_;
-    /// Milliseconds of the steady clock when a server was last not reached; shared by copies.
+    /// Time of the steady clock, in milliseconds, at which a server was last unreachable; -1: never. Shared by copies.
     std::shared_ptr<std::atomic<int64_t>> unreached_ms_ = std::make_shared<std::atomic<int64_t>>(-1);
 };
 

@@ -26,7 +26,7 @@ std::string variable(const char* name)
 
 using Section = std::map<std::string, std::string>;
 
-/// Returns the section of an INI file as the AWS programs write them; empty if file or section does not exist.
+/// Returns a section of an INI file in the syntax of the AWS tools. Empty if file or section does not exist.
 Section section_of(const fs::path& file, std::string_view name)
 {
     std::error_code ignored;
@@ -61,7 +61,7 @@ fs::path file_of(const char* name_of_variable, const char* name)
     return home.empty() ? fs::path() : fs::path(home) / ".aws" / name;
 }
 
-/// The settings of the profile in both files. Those of the credentials file win.
+/// Merges the profile's settings in both files. Settings of the credentials file take precedence.
 Section profile_settings(const std::string& profile)
 {
     const fs::path config = file_of("AWS_CONFIG_FILE", "config");
@@ -88,7 +88,7 @@ std::string setting(const Section& settings, const char* key)
     return found == settings.end() ? std::string() : found->second;
 }
 
-/// Keys that would have to be fetched from a service first.
+/// Fails if the keys would have to be fetched from a service first.
 void refuse_fetched_keys(const std::string& profile, const Section& settings)
 {
     constexpr const char* EXPECTED =
@@ -156,7 +156,7 @@ S3Place s3_place(const Address& address)
         place.url = url_of(server) + "/" + address.host + address.path;
         return place;
     }
-    // The certificate of the servers covers one label before theirs: a bucket with dots goes into the path.
+    // The servers' TLS certificate is for *.SERVER, one label only: a bucket whose name has dots must go into the path.
     const std::string server = "s3." + place.region + ".amazonaws.com";
     const bool has_dots = address.host.find('.') != std::string::npos;
     place.url = has_dots ? "https://" + server + "/" + address.host + address.path

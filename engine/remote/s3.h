@@ -1,8 +1,8 @@
 #pragma once
-// Where the objects of a bucket are, and the keys that sign requests for them: from the environment and ~/.aws, as the
-// AWS programs read them.
+// Finds the address of a bucket's objects, and the keys that sign requests, from the environment and ~/.aws, like the
+// AWS tools.
 //
-// Read are AWS_ACCESS_KEY_ID, AWS_SECRET_ACCESS_KEY, AWS_SESSION_TOKEN, AWS_PROFILE, AWS_REGION, AWS_DEFAULT_REGION,
+// Reads AWS_ACCESS_KEY_ID, AWS_SECRET_ACCESS_KEY, AWS_SESSION_TOKEN, AWS_PROFILE, AWS_REGION, AWS_DEFAULT_REGION,
 // AWS_ENDPOINT_URL_S3, AWS_ENDPOINT_URL, AWS_NO_SIGN_REQUEST, AWS_SHARED_CREDENTIALS_FILE and AWS_CONFIG_FILE. Without
 // keys, requests are anonymous. Any thread may call this.
 
