@@ -1,7 +1,7 @@
 #pragma once
-// Bricks in slots on the device: their codes, aprons included, and the value ranges of their cells. Codes are in one
-// image, or in several if one image cannot hold enough (StackedLayout). The owner assigns bricks to slots
-// (paged_volume.h). One thread, the one that owns the device.
+// Brick slots in device memory: the codes of each brick, apron included, and the value ranges of its cells. The codes
+// are stored in one image, or in several if one image cannot hold enough (StackedLayout). The owner assigns bricks to
+// slots (paged_volume.h). Used only by the thread that owns the device.
 
 #include <vector>
 
@@ -13,7 +13,7 @@ namespace shvr {
 class BrickAtlas {
 public:
     static constexpr size_t BATCH = BrickUploads::BATCH;
-    /// Device bytes per slot, including the leap distances of its cells.
+    /// Device bytes per slot, including the leap distances of the slot's cells.
     static uint64_t slot_bytes(AtlasCodes codes);
 
     /// Fails as gpu::Memory::create does.
@@ -22,10 +22,10 @@ public:
     const glm::uvec3& slots() const { return slots_; }
     /// Slot 0 is never used.
     uint32_t slot_count() const { return slots_.x * slots_.y * slots_.z; }
-    /// The packed address of a slot, as kernels use it.
+    /// The address of a slot, packed into one word as kernels read it.
     uint32_t packed(uint32_t slot) const;
 
-    /// Stages a brick for upload to its slot with the next batch; may wait for the batch before the last one.
+    /// Stages a brick for upload to its slot with the next batch. May wait for the batch before the previous one.
     void stage(uint32_t slot, const BrickTexels& texels);
     void flush() { uploads_.flush(); }
     /// Bricks uploaded so far.

@@ -19,7 +19,7 @@ BrickUploads::BrickUploads(gpu::Executor& executor, gpu::Memory& memory, uint64_
 
 namespace {
 
-/// `Code`: uint16_t, or uint8_t for codes that are multiples of 257.
+/// `Code`: uint16_t; uint8_t where all codes are multiples of 257 (8-bit volumes).
 template <class Code>
 void write_codes(const BrickTexels& texels, const glm::ivec3& begin, const glm::ivec3& end, std::byte* to)
 {
@@ -41,7 +41,7 @@ void write_codes(const BrickTexels& texels, const glm::ivec3& begin, const glm::
 
 void BrickUploads::stage(const Target& target, const BrickTexels& texels)
 {
-    if (targets_.size() == batch_) flush();  // the buffer is full only if flush() failed after the last staged brick
+    if (targets_.size() == batch_) flush();  // the buffer is full here only if flush() failed when it was filled
     Staging& staging = staging_[filling_];
     if (staging.copy) static_cast<void>(staging.copy.finish());
     std::byte* bytes = staging.bytes.mapped().data();
@@ -109,7 +109,7 @@ void BrickUploads::add_copies(FrameGraph& graph, Resource staged) const
         });
 }
 
-/// Adds one dispatch for each image of codes that receives bricks of the batch.
+/// Adds one dispatch for each code image that receives bricks of this batch.
 void BrickUploads::add_kernels(FrameGraph& graph, Resource staged) const
 {
     Resource cells = graph.import("cell ranges", targets_.front().cells->import());

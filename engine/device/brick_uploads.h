@@ -1,8 +1,8 @@
 #pragma once
-// Uploads bricks to the device in double-buffered batches: one batch is filled while the device copies the other, so
-// that cutting, host copies and device copies overlap. On CPU devices each brick is copied row by row. On GPUs one
-// kernel unpacks a batch (passes/brick_unpack.h), since some GPUs run a dispatch for every slice of a copy. One thread,
-// the one that owns the device.
+// Uploads bricks to the device in double-buffered batches: the host fills one batch while the device copies the other,
+// so cutting, host copies and device copies overlap. On CPU devices each brick is copied row by row. On GPUs one kernel
+// unpacks a batch (passes/brick_unpack.h), since some GPU drivers run a dispatch for every slice of a copy. Used only
+// by the thread that owns the device.
 
 #include <array>
 #include <vector>
@@ -20,7 +20,7 @@ public:
     /// `bricks`: upper bound on the number of bricks in a batch.
     BrickUploads(gpu::Executor& executor, gpu::Memory& memory, uint64_t bricks, AtlasCodes codes);
 
-    /// Destination of a brick: its codes, and the ranges of its cells. The images must outlive the copies.
+    /// Where a brick is written: its codes and the ranges of its cells. The images must outlive the copies.
     struct Target {
         const gpu::Storage* codes;
         glm::uvec3 code;  ///< texel of its first code
@@ -30,11 +30,11 @@ public:
         const gpu::Storage* cells;
         glm::uvec3 cell;
     };
-    /// Adds the brick to the current batch; may wait for the batch before the last, whose buffer it takes.
+    /// Adds the brick to the current batch. May wait until the device has copied the batch before the previous one.
     void stage(const Target& target, const BrickTexels& texels);
     /// Begins to upload the staged bricks.
     void flush();
-    /// Waits until everything flushed is on the device.
+    /// Waits until all flushed batches are on the device.
     void finish();
     /// Whether no upload is in flight.
     bool is_idle() const;
@@ -43,13 +43,13 @@ public:
 
 private:
     struct Staging {
-        gpu::Storage bytes;  ///< codes of all bricks, laid out as in a slot, then their ranges
+        gpu::Storage bytes;  ///< codes of all bricks, laid out as in a slot, followed by the ranges
         gpu::Submission copy;
     };
-    /// Offsets at which the codes and the ranges of a brick of a batch are staged.
+    /// Byte offsets of a brick's codes and ranges in the staging buffer of a batch.
     uint64_t codes_at(uint64_t brick) const
     {
-        return brick * slot_code_bytes(codes_);  // a slot takes at least as many codes as any destination
+        return brick * slot_code_bytes(codes_);  // no destination takes more codes than a slot
     }
     uint64_t ranges_at(uint64_t brick) const { return codes_at(batch_) + brick * BrickTexels::RANGE_BYTES; }
     glm::uvec3 extent_of(uint32_t brick) const { return {targets_[brick].end - targets_[brick].begin}; }

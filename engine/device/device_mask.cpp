@@ -20,13 +20,13 @@ constexpr uint64_t MASK_BRICK_BYTES = uint64_t{gpu::BRICK_SIZE} * gpu::BRICK_SIZ
 
 uint64_t DeviceMask::bytes_for(uint64_t painted_bricks)
 {
-    // Includes the unused slot, partly filled rows of the atlas, and a table with three numbers per entry.
+    // Counts the unused slot, partly filled rows of the atlas, and the table with three numbers per entry.
     constexpr uint64_t ROW = 16;
     const uint64_t bricks = painted_bricks + painted_bricks / MASK_SPARE_SHARE + MASK_FEWEST_BRICKS + ROW;
     return bricks * MASK_BRICK_BYTES + 4 * std::bit_ceil(2 * painted_bricks + 16) * gpu::MASK_ENTRY;
 }
 
-/// The atlas for this many bricks; null if no image of the device holds them.
+/// The atlas for this many bricks; null if no image of the device can hold them.
 std::optional<ResourceDesc> DeviceMask::desc_for(uint64_t bricks) const
 {
     const gpu::DeviceTraits& traits = memory_.device().traits();
@@ -38,8 +38,8 @@ std::optional<ResourceDesc> DeviceMask::desc_for(uint64_t bricks) const
     return memory_.can_create(desc) ? std::optional(desc) : std::nullopt;
 }
 
-/// Allocates room for `bricks` and a reserve. The reserve is half of `bricks` if all of this takes at most half of the
-/// free memory, otherwise a sixteenth. There is no reserve if the device's images cannot hold it.
+/// Allocates slots for `bricks` bricks and a reserve. The reserve is half of `bricks` if the total takes at most half
+/// of the free memory, otherwise a sixteenth. There is no reserve if the device's images cannot hold it.
 void DeviceMask::grow(uint64_t bricks)
 {
     atlas_.reset();
@@ -55,7 +55,7 @@ void DeviceMask::grow(uint64_t bricks)
     atlas_ = memory_.create("mask", *desc, gpu::Placement::device, "what is painted");
     free_slots_.clear();
     slots_.clear();
-    // The slot in the first corner is NO_SLOT and stays unused. Slots are taken from the end of the list.
+    // The slot at the origin is NO_SLOT and stays unused. Slots are taken from the end of the list.
     for (uint32_t z = slots.z; z-- > 0;)
         for (uint32_t y = slots.y; y-- > 0;)
             for (uint32_t x = slots.x; x-- > 0;)

@@ -1,6 +1,6 @@
 #pragma once
-// The painted voxels on the device: a copy of the mask's bricks, updated brick by brick. Memory is allocated with the
-// first painted voxel and freed with the last.
+// The painted voxels in device memory: a copy of the mask's bricks, updated brick by brick. Memory is allocated when
+// the first voxel is painted and freed when the last paint is removed.
 
 #include <map>
 #include <optional>
@@ -19,7 +19,7 @@ public:
         : executor_(executor), memory_(memory), hashed_(hashed)
     {}
 
-    /// Minimum device memory of a mask with this many painted bricks.
+    /// Minimum device memory of a mask that has this many painted bricks.
     static uint64_t bytes_for(uint64_t painted_bricks);
     /// Uploads `bricks`, the changed bricks of `mask`; grows the atlas if they do not fit. Does not wait: frames
     /// submitted later see the change. On failure the device holds no mask, and the next update uploads everything.

@@ -80,7 +80,7 @@ std::optional<StackedLayout> stacked_layout(uint64_t slots, AtlasCodes codes, co
         const uint64_t each = (slots + images - 1) / images;
         if (each > most) continue;
         const StackedLayout layout{atlas_layout(each, gpu::BRICK_TEXELS, side, traits.is_cpu), images};
-        // Checks the layout again, since layouts round up; an address has only 8 bits along z.
+        // Checks the rounded-up layout, which may exceed the limits; an address has only 8 bits along z.
         if (layout.count() <= most * images && layout.all().z <= 255) return layout;
     }
     return std::nullopt;

@@ -1,9 +1,9 @@
 #pragma once
 // A volume on the device: either resident, with all bricks on the device (resident_volume.h), or paged
-// (paged_volume.h). Callers need not know which kind it is; for a resident volume most of these calls are trivial.
+// (paged_volume.h). Callers need not know which kind it is; most of these calls do nothing in a resident volume.
 //
 // For each picture: look(), prepare(), the passes that draw, request_feedback(), later take_feedback(). Between
-// pictures: advance(). One thread, the one that owns the executor.
+// pictures: advance(). Used only by the thread that owns the executor.
 
 #include <functional>
 #include <memory>
@@ -20,8 +20,8 @@
 
 namespace shvr {
 
-/// Number of bricks that an atlas holds along each axis, at least `slots` in total. Slots fill a row of bricks first;
-/// narrow rows keep a brick's texels close in memory on devices with linear images.
+/// Number of bricks that an atlas holds along each axis, at least `slots` in total. Slots fill rows of bricks first.
+/// Narrow rows keep a brick's texels close together in memory on devices with linear images.
 glm::uvec3 atlas_layout(uint64_t slots, uint32_t brick_texels, uint32_t max_side, bool narrow);
 /// Maximum number of slots for atlas_layout().
 uint64_t max_atlas_slots(uint32_t brick_texels, uint32_t max_side);
@@ -33,21 +33,21 @@ struct StackedLayout {
     glm::uvec3 all() const { return slots * glm::uvec3(1, 1, images); }
     uint64_t count() const { return uint64_t{slots.x} * slots.y * slots.z * images; }
 };
-/// A layout of at least this many slots in as few images as the device's limits allow; null if it needs too many.
+/// A layout of at least this many slots, in as few images as the device's limits allow; null if none is possible.
 std::optional<StackedLayout> stacked_layout(uint64_t slots, AtlasCodes codes, const gpu::DeviceTraits& traits);
 
-/// The packed address of slot `index`; the indices run along x fastest.
+/// The packed address of slot `index`. Indices increase along x first.
 uint32_t slot_at(uint32_t index, const glm::uvec3& slots);
 
-/// The bricks of a level whose texels, aprons included, depend on level 0 voxels in `boxes`; each brick once.
+/// The bricks of `level`, each once, whose texels (with aprons) depend on the level 0 voxels in `boxes`.
 std::vector<BrickKey> bricks_that_see(std::span<const VoxelBox> boxes, const Size3& size, int level);
 
-/// The bricks of level 0 that overlap a box of voxels, without their slots.
+/// The bricks of level 0 that overlap a box of voxels; their slots are not filled in.
 RegionBricks bricks_around(const VoxelBox& voxels);
 
 class DeviceVolume {
 public:
-    /// A brick that has a slot, for work on all bricks on the device.
+    /// A brick that has a slot, for work that visits all bricks on the device.
     struct Place {
         BrickKey key;
         uint32_t slot = 0;         ///< packed
@@ -61,26 +61,26 @@ public:
     const VolumeInfo& info() const { return info_; }
     const IntensityWindow& window() const { return window_; }
 
-    // ---- Loading in time slices, if requested: until everything is loaded nothing else may be called
+    // ---- Loading in time slices, if requested: nothing else may be called before loading is complete
 
-    /// Loads bricks that have been read, for about `seconds`; never waits for a disk. Returns true once all is loaded.
-    /// Fails like the constructor of a volume that loads at once.
+    /// Uploads bricks that have been read, for about `seconds`; never waits for a disk. Returns true once all bricks
+    /// are loaded. Fails in the same cases as the constructor that loads at once.
     virtual bool load_on(double seconds) = 0;
     /// The loaded fraction, 0 to 1.
     virtual double loaded() const = 0;
 
     // ---- The view
 
-    /// Whether look() with these arguments would return without waiting. If not, starts listing the required bricks in
-    /// the background; the caller has to ask again later. Fails as look() does.
+    /// Whether look() with these arguments would return without waiting. If it would wait, starts listing the required
+    /// bricks in the background; the caller has to ask again later. Fails as look() does.
     virtual bool get_ready(const PageView& view, const Visibility& visibility) = 0;
     /// Sets the view; waits until its bricks are listed. Does nothing if the view is unchanged. Returns finest_level().
     virtual int look(const PageView& view, const Visibility& visibility) = 0;
-    /// Sets what is visible, and keeps the current view.
+    /// Sets what is visible without changing the current view.
     virtual void look_by(const Visibility& visibility) = 0;
     /// Whether the bricks that the view needs are known.
     virtual bool has_view() const = 0;
-    /// The finest level that the view needs; the sample distance may be as large as a voxel of that level.
+    /// The finest level that the view needs. The sample distance may be up to one voxel of that level.
     virtual int finest_level() const = 0;
 
     /// Returns a graph with one short step of prepare()'s work that can be done in advance; null if no such step is
@@ -91,7 +91,7 @@ public:
     virtual std::optional<FrameGraph> next_refinement(const Visibility& visibility, const DeviceMask& mask) = 0;
     virtual bool refinement_is_due() const = 0;
     /// Adds the passes that update the data read by rays, and returns the handles to draw with. `painted`: handles of
-    /// the mask in `graph`. `feedback`: rays record the bricks that they visit.
+    /// the mask in `graph`. `feedback`: whether rays record the bricks that they visit.
     virtual VolumeBinding prepare(FrameGraph& graph, const DeviceMask& mask, const std::optional<MaskBinding>& painted,
                                   bool feedback) = 0;
     /// Whether prepare() would upload changes made since the last picture.
@@ -99,29 +99,29 @@ public:
 
     // ---- Which bricks are needed
 
-    /// The bricks that the rays of one picture visited, in flight from the device.
+    /// A pending read-back of the bricks that the rays of one picture visited.
     class Feedback {
         friend class PagedVolume;
         std::optional<uint32_t> read_back_;
-        std::shared_ptr<const PageTree> tree_;  ///< the tree that the picture was drawn with
+        std::shared_ptr<const PageTree> tree_;  ///< the tree with which the picture was drawn
     };
-    /// Adds the read-back to a graph prepared with feedback, after its draw passes.
+    /// Adds the read-back, after the draw passes of a graph prepared with feedback.
     virtual Feedback request_feedback(FrameGraph& graph, const VolumeBinding& volume) const = 0;
     /// `result`: the result of that graph.
     virtual void take_feedback(const Feedback& feedback, const gpu::FrameResult& result) = 0;
-    /// Forgets earlier visits: only the next picture decides which bricks are needed.
+    /// Discards earlier visits, so that only the next picture decides which bricks are needed.
     virtual void forget_visits() = 0;
-    /// Sets whether the rays of pictures stop and wait where a brick is not on the device (engine/passes/raycast.h,
-    /// RaysInWaiting). If so, only the bricks that rays wait for count as visited, and earlier visits are dropped. In a
-    /// resident volume no ray ever waits. `is_ready`: whether a brick on the device can be drawn; null: all can.
+    /// Sets whether rays stop and wait at bricks that are not on the device (engine/passes/raycast.h, RaysInWaiting).
+    /// If they do, only the bricks that rays wait for count as visited, and earlier visits are discarded. Rays never
+    /// wait in a resident volume. `is_ready`: whether a brick on the device can be drawn; null if all can.
     virtual void let_rays_wait(bool wait, std::function<bool(const BrickKey&)> is_ready = {}) = 0;
-    /// Forgets the farthest visits until there is room for the remaining visited bricks and all bricks within
-    /// `reach[level]` bricks of them. Returns false if there is no room even for one visited brick and those around it.
+    /// Discards the farthest visits until the slots suffice for the remaining visited bricks and all bricks within
+    /// `reach[level]` bricks of them. Returns false if not even one visited brick and its surroundings fit.
     virtual bool limit_visits(const std::vector<int>& reach) = 0;
     /// Whether any ray is waiting for a brick in the pictures drawn since forget_visits().
     virtual bool has_rays_waiting() const = 0;
-    /// Takes loaded bricks. Returns the voxels that may look different now. `wait`: waits for all requested bricks, and
-    /// reports the arrived fraction to `progress`.
+    /// Takes loaded bricks into the volume. Returns the voxels whose appearance may have changed. `wait`: waits for all
+    /// requested bricks, and reports the fraction that has arrived to `progress`.
     virtual std::vector<VoxelBox> advance(bool wait = false, const Progress& progress = {}) = 0;
 
     enum class State : uint8_t {
@@ -136,26 +136,26 @@ public:
     virtual std::vector<std::string> take_messages() = 0;
     enum class Presence : uint8_t {
         there,
-        missing,  ///< not on the device, but may still be loaded
+        missing,  ///< not on the device yet, but may still be loaded
         empty,    ///< known to show nothing; not loaded
         failed,   ///< it cannot be read
     };
     virtual Presence presence_of(const BrickKey& key) const = 0;
-    /// Whether rays visited the brick, as far as is known.
+    /// Whether rays are known to have visited the brick.
     virtual bool is_drawn(const BrickKey& key) const = 0;
-    /// A number that changes whenever the results of is_drawn() or presence_of() may change, except through places().
+    /// A number that changes whenever results of is_drawn() or presence_of() may change other than through places().
     virtual uint64_t visits_revision() const = 0;
-    /// Also requests the bricks within `reach[level]` bricks of visited bricks, since their ambient light comes from
-    /// there. An empty `reach` requests none.
+    /// Also requests the bricks within `reach[level]` bricks of visited bricks, because ambient light comes from them.
+    /// An empty `reach` requests none.
     virtual void want_around(const std::vector<int>& reach) = 0;
-    /// Loads level 0 of `voxels` first, because the user is likely to touch or paint there next; does nothing if these
-    /// bricks take more than a quarter of the slots. Valid until the next call of prefer() or region().
+    /// Loads level 0 of `voxels` first, because the user is likely to touch or paint there next. Does nothing if these
+    /// bricks take more than a quarter of the slots. Remains in effect until the next call of prefer() or region().
     virtual void prefer(const VoxelBox& voxels) = 0;
 
     // ---- Changes
 
     /// Reports that the source's level 0 voxels in these boxes have changed; updates everything that depends on them.
-    /// Frames submitted later see it. Fails if voxels cannot be read.
+    /// Frames submitted later show the change. Fails if voxels cannot be read.
     virtual void renew(std::span<const VoxelBox> changed) = 0;
     /// Reports that the mask changed in these bricks of level 0: they became painted or unpainted.
     virtual void note_painted(const Mask& mask, std::span<const int64_t> bricks) = 0;
@@ -165,13 +165,13 @@ public:
     virtual int levels() const = 0;
     /// Slots of the atlas along each axis.
     virtual glm::uvec3 atlas_slots() const = 0;
-    /// Every brick on the device, and a number that changes whenever this list does.
+    /// Every brick on the device, and a revision number that changes with this list.
     virtual std::vector<Place> places() const = 0;
     virtual uint64_t places_revision() const = 0;
     /// Handles for kernels that work on a region of level 0.
     virtual VolumeBinding atlas(FrameGraph& graph) = 0;
     /// The bricks that overlap a box of voxels; they keep their slots until the next call. Null if some are not on the
-    /// device yet; the missing ones are then loaded first. `wait`: reads missing bricks now, or fails.
+    /// device yet; these are then loaded first. `wait`: reads missing bricks now, and fails if it cannot.
     virtual std::optional<RegionBricks> region(const VoxelBox& voxels, bool wait) = 0;
 
     /// Counts of paged bricks, for reports.
@@ -183,8 +183,8 @@ public:
         uint64_t leaves = 0;   ///< leaves of the tree
         uint64_t reached = 0;  ///< leaves that rays visited
         // Work done by the drawing thread itself:
-        uint64_t leaves_looked_up = 0;                 ///< leaves looked up to find the bricks that the directory shows
-                                                       ///< in their place
+        uint64_t leaves_looked_up = 0;                 ///< leaves whose directory entries were
+                                                       ///< determined
         uint64_t directory_bytes = 0;                  ///< directory bytes written
         uint64_t waits_for_lists = 0;                  ///< calls of look() that had to wait until the view's bricks
                                                        ///< were listed

@@ -37,7 +37,7 @@ void EmptySpace::want(const LeapGridInput& look, const glm::uvec3& cell_counts)
 {
     if (look_ && shows_the_same(*look_, look)) return;
     look_ = look;
-    look_->mask.reset();  // the mask's handles are valid in one graph only
+    look_->mask.reset();  // the mask's handles are valid in one graph only, so they are not kept
     holds_ = false;
     patch_ = {};
     stage_ = 0;

@@ -1,7 +1,7 @@
 #pragma once
 // Tracks which part of the leap grid on the device is stale, and schedules its rebuild. A new look (transfer function,
 // visible groups) needs a full rebuild before anything is drawn. If only a few cells changed, a patch is enough for
-// pictures, and the rest is rebuilt when idle. One thread, the renderer's.
+// pictures, and the rest is rebuilt when idle. Used only by the renderer's thread.
 
 #include <optional>
 
@@ -13,13 +13,13 @@ class EmptySpace {
 public:
     /// Reports that the contents of these cells may have changed.
     void changed(const CellBox& cells);
-    /// Sets the look to build the grid for; its `changed` and `mask` are ignored.
+    /// Sets the look for which the grid is built. The members `changed` and `mask` of `look` are ignored.
     void want(const LeapGridInput& look, const glm::uvec3& cell_counts);
 
-    /// is_due(): work is left that must precede a picture. is_worth_refining(): work is left that may follow a picture.
+    /// is_due(): some work must precede the next picture. is_worth_refining(): some work can follow the next picture.
     bool is_due() const { return look_ && (!holds_ || !patch_.empty()); }
     bool is_worth_refining() const { return look_ && holds_ && stage_ < LEAP_STAGES; }
-    /// Each function adds one pass of its kind of work; call it only while such work is left. If the graph is not
+    /// Each function adds one pass of its kind of work. Call it only while such work is left. If the graph is then not
     /// submitted, the whole grid is rebuilt.
     void prepare(FrameGraph& graph, VolumeBinding& volume, LeapGridInput look);
     void refine(FrameGraph& graph, VolumeBinding& volume, LeapGridInput look);
@@ -27,7 +27,7 @@ public:
 private:
     void forget_unless_submitted(FrameGraph& graph);
 
-    std::optional<LeapGridInput> look_;  ///< look from which the grid is built; its paint is not kept here
+    std::optional<LeapGridInput> look_;  ///< the look for which the grid is built, without its mask handles
     bool holds_ = false;                 ///< pictures are correct, except for the patch
     CellBox patch_;                      ///< changed cells that the grid does not reflect yet
     uint32_t stage_ = 0;                 ///< index of the next stage, up to LEAP_STAGES

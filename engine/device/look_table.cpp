@@ -13,7 +13,7 @@ namespace shvr {
 namespace {
 
 constexpr double LAST_CODE = 65535.0;
-/// If a sloped segment's opacity is below this at both ends, a table of few entries suffices.
+/// A sloped segment whose opacity is below this at both ends can be interpolated in a small table.
 constexpr double MAX_SLOPED = 0.999;
 
 uint32_t whole_rows(uint32_t texels)
@@ -35,7 +35,7 @@ void append_depths(std::vector<glm::vec4>& texels, std::span<const float> depths
     }
 }
 
-/// Appends one texel per entry: the depths of the entry and of its next neighbours along front, back, and both.
+/// Appends a texel per entry: the optical depth at the entry and at its next neighbours (front, back, both).
 void append_depths_of_steps(std::vector<glm::vec4>& texels, std::span<const float> depths)
 {
     const uint32_t side = STEP_TABLE_SIDE;
@@ -55,7 +55,7 @@ void append_points(std::vector<glm::vec4>& texels, std::span<const ControlPoint>
         texels.emplace_back(float(window.code_of(point.intensity)), 0.0f, 0.0f, 0.0f);
 }
 
-/// The smallest multiple of `parts` that is at least MIN_TABLE_ENTRIES - 1. A table has one entry more than parts.
+/// The smallest multiple of `parts` that is at least MIN_TABLE_ENTRIES - 1; a table has one more entry than parts.
 uint32_t parts_of_at_least(uint32_t parts)
 {
     return parts * ((MIN_TABLE_ENTRIES - 2) / parts + 1);
@@ -70,13 +70,13 @@ bool has_smooth_lines(const TransferFunction& function)
         const ControlPoint &p = points[i], &q = points[i + 1];
         if (p == q) continue;
         if (p.intensity == q.intensity) return false;
-        // Where the function's opacity rises up to 1, the opacity of a step rises too steeply to be interpolated.
+        // Opacity that rises up to 1 makes the opacity of a step too steep to be interpolated.
         if (std::max(p.opacity, q.opacity) >= MAX_SLOPED && p.opacity != q.opacity) return false;
     }
     return true;
 }
 
-/// A number of entries, small enough for fast memory, that puts every control point at an entry; null if none does.
+/// A number of entries that fits into fast memory and puts each control point at an entry; null if there is none.
 std::optional<uint32_t> entries_at_points(const TransferFunction& function, const IntensityWindow& window,
                                           const TableRange& range)
 {
@@ -105,7 +105,7 @@ float opaque_scale(const TableRange& range)
     return float((gpu::OPAQUE_ENTRIES - 1) / std::max(range.upper - range.lower, 1e-6));
 }
 
-/// Appends the map of opaque intervals, then the intervals; nothing if there are none.
+/// Appends the map of opaque intervals, then the intervals; appends nothing if `intervals` is empty.
 void append_opaque(std::vector<glm::vec4>& texels, const std::vector<OpaqueInterval>& intervals,
                    const TableRange& range, const IntensityWindow& window)
 {
@@ -151,7 +151,7 @@ TableRange table_range(const TransferFunction& function, const IntensityWindow& 
     const double first = window.code_of(function.lower()), last = window.code_of(function.upper());
     TableRange range{
         .lower = std::clamp(first, 0.0, LAST_CODE), .upper = std::clamp(last, 0.0, LAST_CODE), .samples = {}};
-    // If nothing is cut off, keeps the function's own bounds, which are more exact than bounds computed from codes.
+    // If nothing is cut off, keeps the function's own bounds: they are more exact than bounds computed from codes.
     range.samples.lower = range.lower == first ? function.lower() : window.intensity_of(range.lower);
     range.samples.upper = range.upper == last ? function.upper() : window.intensity_of(range.upper);
     const auto codes = std::max(uint32_t(std::ceil(range.upper - range.lower)), 1u);

@@ -1,6 +1,6 @@
 #pragma once
 // A transfer function as the device reads it: a table for one step length, plain or pre-integrated, and the intervals
-// in which the function is visible. Baked in double on the CPU, and cached until something changes.
+// in which the function is visible. Computed in double precision on the CPU, and cached until an input changes.
 
 #include <algorithm>
 #include <optional>
@@ -25,17 +25,17 @@ struct TableRange {
     double lower = 0.0, upper = 0.0;  ///< codes
     Samples samples;                  ///< the same in intensities
 };
-/// The plain table has few entries if all control points are at entries, and the function is continuous and nowhere
-/// rises up to 1: interpolation between entries then reproduces the function. Otherwise, entries are at most one code
-/// apart, so that a step of the function is as sharp as the codes allow; if the function begins and ends at whole
-/// codes, entries are at whole codes.
+/// The plain table is small if all control points are at entries, and the function is continuous and nowhere rises up
+/// to 1: interpolation between entries then reproduces the function. Otherwise, entries are at most one code apart, so
+/// that a step of the function is as sharp as the codes allow; if the function begins and ends at whole codes, entries
+/// are at whole codes.
 TableRange table_range(const TransferFunction& function, const IntensityWindow& window, bool is_preintegrated);
 
 struct LookTable {
     std::vector<ControlPoint> points;
     double step_voxels = 0.0;  ///< in reference lengths
     bool preintegrated = false;
-    bool has_points = false;  ///< includes the control points, for the integral without steps
+    bool has_points = false;  ///< whether the table includes the control points, for the integral without steps
     Samples samples;
     std::vector<glm::vec4> texels;  ///< in the layout of raycast.h
     std::vector<uint32_t> visible_intervals;
@@ -46,7 +46,7 @@ struct LookTable {
 LookTable make_look_table(const TransferFunction& function, const IntensityWindow& window, double step_voxels,
                           bool is_preintegrated, bool has_points = false);
 /// The looks of all 256 colour groups, in the order of their numbers. The first 256 texels hold linear RGB and the
-/// opacity per step (0 for hidden groups); the next 256 texels hold the optical depth.
+/// opacity per step (0 for hidden groups). The next 256 texels hold the optical depths.
 std::vector<glm::vec4> make_group_looks(const Groups& groups, double step_voxels);
 
 /// Sets the parameters shared by all kernels that look up a transfer function table.
@@ -63,7 +63,7 @@ void set_table(Params& params, const TableRange& range)
 void set_look_table(gpu::RaycastParams& params, const TransferFunction& function, const IntensityWindow& window,
                     bool is_preintegrated, bool has_points = false);
 
-/// A table on the device: an rgba32f image in rows of gpu::TABLE_WIDTH. One thread, the renderer's.
+/// A table on the device: an rgba32f image in rows of gpu::TABLE_WIDTH. Used only by the renderer's thread.
 class DeviceTable {
 public:
     DeviceTable(gpu::Memory& memory, std::string name) : memory_(memory), name_(std::move(name)) {}
@@ -79,7 +79,7 @@ private:
     bool is_sent_ = false;
 };
 
-/// A scene's tables: one for its transfer function and one for its groups. One thread, the renderer's.
+/// A scene's tables, for its transfer function and its groups. Used only by the renderer's thread.
 class LookTables {
 public:
     explicit LookTables(gpu::Memory& memory)
@@ -88,7 +88,7 @@ public:
 
     /// The table for steps of `step_voxels` reference lengths.
     const LookTable& table_of(const Look& look, const IntensityWindow& window, double step_voxels);
-    /// Visible densities, from whichever table is cached: the step length does not matter. Excludes the guard (leap.h).
+    /// The visible densities, from any cached table, as the step length does not matter. Excludes the guard (leap.h).
     Visibility visibility_of(const Look& look, const IntensityWindow& window);
     Resource upload_function(FrameGraph& graph, const Look& look, const IntensityWindow& window, double step_voxels);
     Resource upload_groups(FrameGraph& graph, const Look& look, double step_voxels);

@@ -15,7 +15,7 @@ static_assert(MAX_OCCLUSION_RADIUS == OCCLUSION_MAX_RADIUS);
 
 namespace {
 
-/// Reach of light beyond the radius: the lift of rays off surfaces, half the largest cell, and the voxel itself.
+/// Light reaches beyond the radius by the lift of rays off surfaces, half the largest cell, and the voxel itself.
 constexpr double MARGIN_VOXELS = 8.0;
 
 /// Scratch memory for `bricks` paged bricks; resident bricks need less.
@@ -26,8 +26,8 @@ uint64_t slice_bytes(uint32_t bricks)
     return bytes;
 }
 
-/// Number of bricks to renew at once. Their scratch memory is at most a sixteenth of the budget. On a CPU, a few bricks
-/// are enough to keep it busy, and stay in its caches.
+/// Number of bricks to update at once. Their scratch memory is at most a sixteenth of the budget. On a CPU, a few
+/// bricks keep all cores busy and stay in the caches.
 uint32_t slice_for(const gpu::DeviceTraits& traits, uint64_t device_budget)
 {
     const uint64_t most = traits.is_cpu ? gpu::OCCLUSION_COLUMN : gpu::OCCLUSION_SLICE;
@@ -125,7 +125,7 @@ OcclusionBinding Occlusion::bring_up_to_date(FrameGraph& graph)
     return binding;
 }
 
-/// Applies `set` to the entries that still exist.
+/// Applies `set` to the entries of those `keys` that still have one.
 template <class Set>
 void Occlusion::mark(const std::vector<BrickKey>& keys, const Set& set)
 {
@@ -189,13 +189,13 @@ void Occlusion::changed(const VoxelBox& changed, int64_t apron)
     if (!look_) return;
     ++changes_;
     for (auto& [key, entry] : entries_) {
-        // A coarse voxel has the paint at its centre, which may be in a neighbour of the finer brick.
+        // A coarse voxel takes the paint at its centre, which may lie in the next finer brick.
         const VoxelBox brick = voxels_of(key, volume_->info().size);
         const VoxelBox voxels{changed.lower - (apron << key.level), changed.upper + (apron << key.level)};
         entry.needs_cells = entry.needs_cells || meet(brick, voxels);
         const auto reach = int64_t(std::ceil(look_->radius + std::ldexp(MARGIN_VOXELS, key.level)));
         entry.needs_values = entry.needs_values || meet(brick, {voxels.lower - reach, voxels.upper + reach});
-        // Any coarse brick, and any level 0 brick near the change, may now be seen, or be seen no longer.
+        // The change may show or hide any coarse brick, and any level 0 brick near the change.
         const int64_t beside = int64_t{gpu::BRICK_SIZE} << key.level;
         if (key.level > 0 || meet(brick, {voxels.lower - beside, voxels.upper + beside})) entry.is_seen.reset();
     }
@@ -244,7 +244,7 @@ std::vector<int> Occlusion::reach() const
     return reach;
 }
 
-/// Whether a brick within `reach` bricks of `key` is painted; for coarse bricks, whether anything is painted at all.
+/// Whether a brick within `reach` bricks of `key` is painted. For coarse bricks: whether any voxel is painted at all.
 bool Occlusion::is_painted(const BrickKey& key, int reach) const
 {
     if (mask_->empty() || key.level > 0) return !mask_->empty();
@@ -264,7 +264,7 @@ bool Occlusion::shows(const BrickKey& key, const Entry& entry) const
     return look_->visibility.shows(entry.range.minimum, entry.range.maximum) || is_painted(key, 0);
 }
 
-/// Whether no brick that the values of `key` need is missing: each is on the device, or will never be.
+/// Whether each brick that the values of `key` depend on is on the device or will never be there.
 bool Occlusion::has_all_around(const BrickKey& key) const
 {
     const glm::ivec3 counts = brick_counts(size_of_level(volume_->info().size, key.level));
@@ -279,7 +279,7 @@ bool Occlusion::has_all_around(const BrickKey& key) const
     return !is_missing;
 }
 
-/// Called for every brick after a change, so the cheapest checks come first.
+/// Called for every brick after a change, so cheap checks come first.
 bool Occlusion::is_candidate(const BrickKey& key, Entry& entry)
 {
     ++counts_.walks;
@@ -307,7 +307,7 @@ bool Occlusion::is_seen(const BrickKey& key, Entry& entry)
     return *entry.is_seen;
 }
 
-/// Whether the brick is seen. Even an empty brick may be, next to painted voxels or to the visible ends of a step.
+/// Whether the brick is seen. An empty brick is seen if it lies next to paint or to the visible end of a step.
 bool Occlusion::look_whether_seen(const BrickKey& key, const Entry& entry) const
 {
     if (look_->visibility.shows(entry.range.minimum, entry.range.maximum) || is_painted(key, 1)) return true;
@@ -330,10 +330,10 @@ bool Occlusion::is_due()
     return false;
 }
 
-/// Queues bricks of one level only: the level of the nearest brick.
+/// Queues bricks of a single level: the level of the nearest brick.
 void Occlusion::fill_queue(const glm::dvec3& eye)
 {
-    /// Length of the queue: enough for the next slices, so that they need no pass over all bricks.
+    /// Maximum length of the queue: enough for the next slices without scanning all bricks again.
     constexpr size_t MOST = size_t{4} * gpu::OCCLUSION_SLICE;
     queued_ = cause();
     queued_eye_ = eye;
@@ -380,8 +380,8 @@ std::vector<BrickKey> Occlusion::nearest(const glm::dvec3& eye, size_t most)
 
 // ---- The work -------------------------------------------------------------------------------------------------------
 
-/// Returns the entry of brick `key` in the table of bricks around another brick (shaders/occlusion/occlusion.h): the
-/// slot of that brick or of its finest ancestor on the device; 0 if it shows nothing. Adds the key found to `keys`.
+/// Returns the entry of brick `key` in another brick's table of surrounding bricks (shaders/occlusion/occlusion.h): the
+/// slot of the brick or of its finest ancestor on the device, or 0 if it shows nothing. Adds the key found to `keys`.
 uint32_t Occlusion::around(const BrickKey& key, std::vector<BrickKey>* keys) const
 {
     const glm::ivec3 counts = brick_counts(size_of_level(volume_->info().size, key.level));
@@ -498,7 +498,7 @@ void Occlusion::add_values(FrameGraph& graph, const VolumeBinding& volume, Occlu
     input.params.table_entries = look_->visibility.params.table_entries;
     input.params.guard = look_->visibility.params.guard;
     input.params.rays = look_->rays;
-    // For radii below a voxel there are no near taps, but the tables still need a value for the stretch.
+    // Radii below a voxel have no near taps, but the tables still need a value for the stretch.
     const double near_stretch = input.taps.taps.empty() ? 1.0 : input.taps.near_stretch;
     input.near = cells_input(level, std::ldexp(near_stretch, level), mask);
     input.params.inverse_spacing = std::min({spacing.x, spacing.y, spacing.z}) / spacing;

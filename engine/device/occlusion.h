@@ -34,7 +34,7 @@ public:
         TransferFunction function;
         Visibility visibility;             ///< visibility of the same transfer function
         std::array<double, 256> groups{};  ///< opacities per reference length; 0: hidden
-        CutBox cut;                        ///< geometry that is cut away does not block light
+        CutBox cut;                        ///< geometry that is cut away blocks no light
         double radius = 16.0;              ///< reference lengths
         uint32_t rays = 32;
         bool full_sphere = false;
@@ -46,8 +46,8 @@ public:
     void clear();
     /// Sets the look to compute for. Fails if the budget cannot hold the images.
     void look(const Look& look, const DeviceVolume& volume, const DeviceMask& mask);
-    /// Reports a change of voxels: of their paint (`apron` 0), or of their densities (`apron` in voxels of each brick's
-    /// own level).
+    /// Reports a change of voxels. `apron`: 0 if their paint changed; if their densities changed, the apron in voxels
+    /// of each brick's own level.
     void changed(const VoxelBox& voxels, int64_t apron = 0);
 
     /// Device memory: slot_bytes() per slot of the atlas, scratch_bytes() for scratch images under `device_budget`.
@@ -56,7 +56,7 @@ public:
 
     bool exists_for(const DeviceVolume& volume) const { return volume_ == &volume; }
     bool has_memory() const { return bool(values_); }
-    /// For each level: the largest distance, in bricks, from which light may reach a brick.
+    /// For each level: the maximum distance, in bricks, from which light can reach a brick.
     std::vector<int> reach() const;
     /// Whether anything is stale.
     bool is_due();
@@ -68,16 +68,16 @@ public:
         size_t bricks = 1;       ///< bricks whose values are computed, up to gpu::OCCLUSION_SLICE
         size_t cell_bricks = 8;  ///< bricks whose cells are computed
     };
-    /// Adds the next slice to a graph that must be submitted, and returns the voxels that it updates. `eye` in voxels.
+    /// Adds the next slice to a graph that must be submitted. Returns the voxels that it updates. `eye` is in voxels.
     std::vector<VoxelBox> next(FrameGraph& graph, const VolumeBinding& volume, const std::optional<MaskBinding>& mask,
                                const glm::dvec3& eye, const Most& most);
-    /// Handles for a graph that must be submitted; adds passes that set bricks without any values to fully lit.
+    /// Handles for a graph that must be submitted. Adds passes that make bricks without values fully lit.
     OcclusionBinding bring_up_to_date(FrameGraph& graph);
 
     struct Counts {
         uint64_t cells = 0;   ///< bricks whose cells have been computed
         uint64_t values = 0;  ///< bricks whose values have been computed
-        uint64_t looks = 0;   ///< number of checks whether a brick is visible given its paint and neighbours
+        uint64_t looks = 0;   ///< how often a brick's visibility was computed from paint and neighbours
         uint64_t walks = 0;   ///< bricks checked for being due
     };
     const Counts& counts() const { return counts_; }
@@ -89,7 +89,7 @@ private:
         bool needs_cells = true, needs_values = true;
         bool is_new = true;             ///< its values have never been computed
         bool is_exact = false;          ///< whether every brick that its values needed was on the device
-        std::optional<bool> is_seen{};  ///< unknown since a change of the brick's range, look, paint or neighbours
+        std::optional<bool> is_seen{};  ///< null after a change of the brick's range, look, paint or neighbours
     };
     using Entries = std::unordered_map<BrickKey, Entry, BrickKeyHash>;
 
@@ -130,7 +130,7 @@ private:
     uint64_t revision_ = 0;  ///< places_revision() of the volume
     Counts counts_;
 
-    /// The inputs that determine which bricks are due, apart from completed work.
+    /// The inputs that, together with completed work, determine which bricks are due.
     struct Cause {
         uint64_t visits = 0;   ///< DeviceVolume::visits_revision
         uint64_t changes = 0;  ///< changes_
@@ -142,9 +142,9 @@ private:
         BrickKey key;
     };
     uint64_t changes_ = 1;            ///< incremented when entries may become due
-    Cause nothing_due_{}, queued_{};  ///< inputs at which nothing was due; inputs at which the queue was filled
+    Cause nothing_due_{}, queued_{};  ///< inputs when nothing was due, and inputs when the queue was filled
     glm::dvec3 queued_eye_{0.0};
-    std::vector<Candidate> queue_;  ///< nearest due bricks, all of one level, sorted with the nearest last
+    std::vector<Candidate> queue_;  ///< nearest due bricks, all of one level, sorted from far to near
 };
 
 }  // namespace shvr

@@ -94,7 +94,7 @@ std::shared_ptr<PageList> list_of(const KnownBricks& known, PageSight sight, uin
     list->leaves.clear(tree->leaves.size());
     list->entries.reserve(std::bit_ceil(tree->entries.size()));
     list->entries = tree->entries;
-    // Rounds the size up to a power of two: views differ in size, and a frame's buffers are reused only if sizes match.
+    // Rounds the size up to a power of two: the sizes of views differ, and frames reuse only buffers of equal size.
     list->entries.resize(std::bit_ceil(tree->entries.size()));
     for (uint32_t leaf = 0; leaf < tree->leaves.size(); ++leaf) {
         const BrickKey& key = tree->leaves[leaf].key;

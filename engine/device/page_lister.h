@@ -1,10 +1,10 @@
 #pragma once
 // Lists the bricks that a view needs, on its own thread: for 10^5 bricks this takes 10 ms, too long for the drawing
 // thread to wait while a camera moves. The lister has its own copy of the table of bricks, and is notified of every
-// change. A list reflects the changes noted before it was requested; the caller that takes it applies later changes
-// (changes_since). A few lists are kept, for panes that alternate.
+// change. A list reflects the changes noted before the request; the caller applies later changes to it (changes_since).
+// A few lists are cached, because panes alternate.
 //
-// One thread calls it and never notes changes during a request; the lister owns the other thread.
+// One thread calls the lister and never notes changes during a request. The lister owns the other thread.
 
 #include <condition_variable>
 #include <deque>
@@ -33,10 +33,10 @@ struct BrickEvent {
     enum class Kind : uint8_t {
         placed,   ///< the brick was uploaded; `number` is its packed slot
         gone,     ///< is no longer on the device
-        read,     ///< the brick was read; `number` is its range, as stored by KnownBricks
+        read,     ///< the brick was read; `number` is its range, encoded as in KnownBricks
         unread,   ///< the brick's voxels have changed, so its range is unknown
         painted,  ///< the brick's paint changed; `number` is its count of painted level 0 bricks
-        other,    ///< something else changed in this brick alone; details are kept elsewhere
+        other,    ///< another property of this brick changed; details are kept elsewhere
     };
     BrickKey key;
     Kind kind = Kind::other;
@@ -45,7 +45,7 @@ struct BrickEvent {
 
 /// The known state of a volume's paged bricks: which are on the device and where, the ranges of those that were read,
 /// and which are painted. It determines the bricks that a view needs and the stand-in drawn for a missing brick.
-/// Changes are plain data, so that two threads can each have a copy. One thread per copy.
+/// Changes are plain data, so that two threads can each have a copy. Each copy is used by one thread.
 class KnownBricks {
 public:
     KnownBricks(const VolumeInfo& info, int levels, const IntensityWindow& window,
@@ -71,12 +71,12 @@ public:
 
     /// Whether paint may be visible in a brick, including paint of neighbouring bricks.
     bool is_painted(const PageSight& sight, const BrickKey& key) const;
-    /// Whether a brick, or any of the finer bricks below it, may show anything according to the file's densities.
+    /// Whether a brick, or any finer brick below it, may show something according to the file's densities.
     bool may_show(const PageSight& sight, const BrickKey& key) const;
     /// Whether the brick has been read and shows nothing.
     bool is_empty(const PageSight& sight, const BrickKey& key) const;
-    /// The directory's entry for a leaf (shaders/pages.h). The entry shows nothing, the leaf's brick, or the finest
-    /// ancestor of the brick on the device.
+    /// The directory's entry for a leaf (shaders/pages.h): nothing if the leaf shows nothing, otherwise the leaf's
+    /// brick or, if missing, its finest ancestor on the device.
     uint32_t entry_of(const PageSight& sight, const BrickKey& leaf) const;
 
 private:
@@ -93,7 +93,7 @@ private:
 struct PageList {
     PageSight sight;
     std::shared_ptr<const PageTree> tree;
-    BrickMap leaves;                ///< index of each leaf of the tree, by its key
+    BrickMap leaves;                ///< indices of the tree's leaves, by their keys
     std::vector<uint32_t> entries;  ///< the directory of shaders/pages.h
     uint64_t changes = 0;           ///< it reflects the first `changes` changes
     bool has_entries = true;        ///< false: its entries must still be made
@@ -101,19 +101,19 @@ struct PageList {
 
 class PageLister {
 public:
-    /// `known` is the initial state, without any brick. Any thread must be able to read its source.
+    /// `known` is the initial state, in which no brick is known. Its source must be readable from any thread.
     explicit PageLister(KnownBricks known);
     ~PageLister();
     PageLister(const PageLister&) = delete;
 
     void note(const BrickEvent& change);
-    /// changes(): number of changes so far. changes_since(): those after the first `changes`; null if some are dropped.
+    /// changes(): number of changes so far. changes_since(): the ones after the first `changes`; null if dropped.
     uint64_t changes() const { return first_ + log_.size(); }
     std::optional<std::span<const BrickEvent>> changes_since(uint64_t changes) const;
 
-    /// Whether take() would return without waiting. If not, starts making the list, unless another is in progress.
+    /// Whether take() would return without waiting. If not, starts making the list unless another list is being made.
     bool get_ready(const PageView& view, const Visibility& visibility);
-    /// Waits for the list and returns it. Fails if listing fails because of the source.
+    /// Waits for the list and returns it. Fails if the source failed while the list was made.
     std::shared_ptr<PageList> take(const PageView& view, const Visibility& visibility);
     /// Puts a taken list back into the cache.
     void keep(std::shared_ptr<PageList> list);

@@ -11,7 +11,7 @@ namespace shvr {
 
 namespace {
 
-/// Levels with at most this many bricks are always on the device.
+/// Levels with at most this many bricks always stay on the device.
 constexpr int64_t COARSE_BRICKS = 64;
 
 int64_t brick_total(const Size3& size, int level)
@@ -29,13 +29,13 @@ uint64_t useful_slots(const VolumeInfo& info, int levels)
     return useful;
 }
 
-/// The layout with as many slots as fit into `bytes`, in as many images as these slots require.
+/// The layout with as many slots as fit into `bytes`, in as few images as can hold these slots.
 StackedLayout layout_for(const gpu::DeviceTraits& traits, const VolumeInfo& info, int levels, AtlasCodes codes,
                          uint64_t bytes)
 {
     const uint64_t useful = useful_slots(info, levels), most = bytes / BrickAtlas::slot_bytes(codes);
     const uint64_t least = std::min(useful, PagedVolume::MIN_SLOTS);
-    // Layouts round up, so that one for fewer slots may have more slots, or exist although none exists for more slots.
+    // Since layouts round up, a layout for fewer slots may hold more, or exist where one for more slots does not.
     for (uint64_t slots = std::min(useful, most); slots >= least; --slots)
         if (const std::optional<StackedLayout> layout = stacked_layout(slots, codes, traits))
             if (layout->count() <= most) return *layout;
@@ -50,7 +50,7 @@ int kept_levels(int levels)
     return std::min(levels, int(gpu::PAGE_MISSING));
 }
 
-/// Fails if finer bricks get less than half of the slots, unless there are slots for all bricks.
+/// Fails if less than half of the slots is left for finer bricks, unless all bricks have slots.
 void check_coarsest(const VolumeInfo& info, int levels, AtlasCodes codes, uint64_t slots)
 {
     const int64_t bricks = brick_total(info.size, levels - 1);
@@ -89,7 +89,7 @@ PagedVolume::PagedVolume(gpu::Executor& executor, gpu::Memory& memory, std::shar
     pin_coarse_levels();
 }
 
-/// Loads the coarsest level, or starts loading it, for an early first picture; requests the next levels.
+/// Loads the coarsest level, or starts loading it, so that the first picture is early. Requests the next levels.
 void PagedVolume::pin_coarse_levels()
 {
     check_coarsest(info(), levels_, options_.codes, slots_.count());
@@ -134,7 +134,7 @@ double PagedVolume::loaded() const
 
 // ---- The view -------------------------------------------------------------------------------------------------------
 
-/// Rounds `shown` outwards to whole bricks, so that small changes of `shown` rarely change the view.
+/// Rounds `shown` outwards to whole bricks, so that small changes of `shown` rarely need a new list.
 PageView PagedVolume::rounded(PageView view) const
 {
     constexpr int64_t SIZE = gpu::BRICK_SIZE;
@@ -161,7 +161,7 @@ int PagedVolume::look(const PageView& exact, const Visibility& visibility)
     return finest_level();
 }
 
-/// Makes a list current. Puts the previous list, including the changes applied to it so far, back into the cache.
+/// Makes a list the current one. Returns the previous list, with all changes applied to it, to the cache.
 void PagedVolume::install(std::shared_ptr<PageList> list)
 {
     const std::shared_ptr<PageList> before = std::exchange(list_, std::move(list));
@@ -175,7 +175,7 @@ void PagedVolume::install(std::shared_ptr<PageList> list)
     is_reached_.assign(tree().leaves.size(), false);
     was_reached_.assign(tree().leaves.size(), false);
     awaited_.clear();
-    // Bricks needed a moment ago are likely to be needed again.
+    // Bricks that were needed a moment ago are likely to be needed again.
     for (const uint32_t leaf : std::exchange(visited_, {})) {
         if (!before || is_other_look) break;
         if (const std::optional<uint32_t> now = leaf_of(before->tree->leaves[leaf].key)) visit(*now, !is_same_view);
@@ -252,7 +252,7 @@ VolumeBinding PagedVolume::prepare(FrameGraph& graph, const DeviceMask& mask, co
     return volume;
 }
 
-/// Computes leaps of bricks that have arrived, or whose look has changed.
+/// Computes the leap distances of new bricks and of bricks whose look has changed.
 void PagedVolume::add_leaps(FrameGraph& graph, VolumeBinding& volume, const DeviceMask& mask,
                             const std::optional<MaskBinding>& painted)
 {

@@ -14,7 +14,7 @@
 // The cost of a brick that arrives or is evicted does not depend on how many bricks the view has: its directory entries
 // are patched, on the host and on the device.
 //
-// One thread, the one that owns the executor; nothing here waits for a loader unless its comment says so.
+// Used only by the thread that owns the executor. Nothing here waits for a loader unless its comment says so.
 
 #include <memory>
 #include <optional>
@@ -30,7 +30,7 @@ namespace shvr {
 
 class PagedVolume final : public DeviceVolume {
 public:
-    /// Enough slots for a region of 64^3 voxels anywhere, the bricks around it, and the coarsest levels.
+    /// Enough slots for any region of 64^3 voxels, the bricks around it, and the coarsest levels.
     static constexpr uint64_t MIN_SLOTS = 64;
 
     struct Options {
@@ -38,7 +38,7 @@ public:
         int threads = 1;            ///< loader threads
         uint64_t host_bytes = 0;    ///< budget of the bricks kept on the host
         uint64_t device_bytes = 0;  ///< budget of the atlas and its tables
-        bool in_slices = false;     ///< the constructor does not read the coarsest level; `load_on` takes it in time
+        bool in_slices = false;     ///< the constructor does not read the coarsest level; `load_on` loads it in time
                                     ///< slices
     };
     /// Reads the coarsest level. Fails if the budget holds too few bricks to work with.
@@ -48,7 +48,7 @@ public:
     bool load_on(double seconds) override;
     double loaded() const override;
 
-    /// Fails if `device_bytes` holds too few bricks of such a volume in addition to its coarsest level.
+    /// Fails if `device_bytes` has too little room for bricks in addition to the volume's coarsest level.
     static void check_room(const gpu::DeviceTraits& traits, const VolumeInfo& info, int levels, AtlasCodes codes,
                            uint64_t device_bytes);
 
@@ -57,7 +57,7 @@ public:
     void look_by(const Visibility& visibility) override;
     bool has_view() const override { return list_ != nullptr; }
     int finest_level() const override { return list_ ? list_->tree->finest_level : 0; }
-    /// All preparation depends on the view, so it is left to prepare().
+    /// All preparation depends on the view, so prepare() does it.
     std::optional<FrameGraph> next_preparation(const Visibility&, const DeviceMask&) override { return std::nullopt; }
     std::optional<FrameGraph> next_refinement(const Visibility&, const DeviceMask&) override { return std::nullopt; }
     bool refinement_is_due() const override { return false; }
@@ -81,7 +81,7 @@ public:
     void prefer(const VoxelBox& voxels) override;
 
     /// Reloads the bricks of all levels that depend on the voxels. Bricks on the device are reloaded at once. If there
-    /// are too many, only the coarse bricks that are always on the device are reloaded at once, and the others are
+    /// are too many, only the coarse bricks that always stay on the device are reloaded at once; the others are
     /// requested again like missing bricks. Bricks that are not on the device are reloaded when needed.
     void renew(std::span<const VoxelBox> changed) override;
     void note_painted(const Mask& mask, std::span<const int64_t> bricks) override;
@@ -98,7 +98,7 @@ public:
 private:
     PageView rounded(PageView view) const;
     void install(std::shared_ptr<PageList> list);
-    /// The sight of the current list; an empty sight before the first look().
+    /// The sight of the current list; an empty sight before the first call of look().
     const PageSight& sight() const { return list_ ? list_->sight : no_sight_; }
     const PageTree& tree() const { return *list_->tree; }
     std::optional<uint32_t> leaf_of(const BrickKey& key) const
@@ -132,7 +132,7 @@ private:
     void fill_leaf(uint32_t leaf);
     void fill_directory();
     void note(const BrickEvent& change);
-    /// Notes any other change of a brick that affects what is drawn in the brick's place.
+    /// Notes any other change of a brick that affects what is drawn for this brick.
     void note_changed(const BrickKey& key) { note({.key = key}); }
     void note_all_changed();
     gpu::BrickLeapJob job_of(const BrickKey& key, uint32_t slot) const;
@@ -146,22 +146,22 @@ private:
     gpu::Storage cell_leap_, directory_;
 
     BrickSlots slots_;
-    KnownBricks known_;  ///< knowledge of the bricks: their slots, ranges that were read, and paint
+    KnownBricks known_;  ///< known state of the bricks: slots, ranges of those read, and paint
     PageLister lister_;
     const PageSight no_sight_{};
     std::shared_ptr<PageList> list_;  ///< the current view's list
-    bool list_is_outdated_ = false;   ///< paint has changed which bricks the view needs; a new list is being made
+    bool list_is_outdated_ = false;   ///< paint changed which bricks the view needs, so a new list is being made
 
     // Indexed by leaf.
     std::vector<bool> is_reached_;  ///< leaves visited by rays since the view last changed
-    /// Leaves visited earlier. They still count as visited while there is room for them and for the leaves visited now;
-    /// without this limit, turning the camera would keep bricks that are no longer visible.
+    /// Leaves visited earlier. They count as visited while the slots hold their bricks and those of the leaves visited
+    /// now. Without this limit, bricks that are no longer visible would be kept when the camera turns.
     std::vector<bool> was_reached_;
     std::vector<uint32_t> visited_;  ///< leaves in either set
-    std::set<uint32_t> awaited_;     ///< superset of the visited leaves whose bricks are missing; nearest first
+    std::set<uint32_t> awaited_;     ///< includes all visited leaves whose bricks are missing; nearest first
     bool rays_wait_ = false;
     std::function<bool(const BrickKey&)> is_ready_;
-    /// Bricks that cannot be read and that rays have waited for. Coarser bricks are now drawn instead of these bricks.
+    /// Bricks that rays have waited for but that cannot be read. Coarser bricks are drawn instead.
     std::unordered_set<BrickKey, BrickKeyHash> given_up_;
     /// Indices of the directory entries (of the current list) that differ from the entries on the device. Not used
     /// while all_entries_changed_ is true.
@@ -179,7 +179,7 @@ private:
     uint64_t around_revision_ = 0;  ///< value of reached_revision_ at which around_ was made
     uint64_t places_revision_ = 1, reached_revision_ = 1;
     std::vector<BrickKey> coarse_;             ///< bricks that are always on the device
-    size_t coarsest_ = 0, coarsest_left_ = 0;  ///< number of bricks that `load_on` takes, and how many of them are left
+    size_t coarsest_ = 0, coarsest_left_ = 0;  ///< number of bricks that `load_on` has to load, and how many remain
     std::vector<BrickKey> leap_jobs_;
 
     BrickStore store_;  ///< declared last: loaders stop before the members they read are destroyed

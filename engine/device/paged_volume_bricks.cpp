@@ -1,4 +1,4 @@
-// Paged bricks (paged_volume.h): which are requested, which are needed, and access for work on level 0.
+// Paged bricks (paged_volume.h): which are requested, which are needed, and access to level 0 for other work.
 
 #include <algorithm>
 #include <utility>
@@ -10,7 +10,7 @@ namespace shvr {
 
 namespace {
 
-/// Maximum number of bricks re-read after a change of voxels while the caller waits.
+/// Maximum number of bricks re-read while the caller waits, after a change of voxels.
 constexpr size_t MAX_RENEWED_NOW = 256;
 
 }  // namespace
@@ -21,7 +21,7 @@ bool PagedVolume::leaf_is_reached(const BrickKey& key) const
     return leaf && is_visited(*leaf);
 }
 
-/// `is_before`: whether the leaf was visited by rays of the previous view, not of the current one.
+/// `is_before`: the leaf was visited by rays of the previous view but not of the current one.
 void PagedVolume::visit(uint32_t leaf, bool is_before)
 {
     if (!is_visited(leaf)) {
@@ -187,8 +187,8 @@ void PagedVolume::renew(std::span<const VoxelBox> changed)
     rebuild_tree();
 }
 
-/// Rebuilds the tree after the source's data has changed; keeps the record of which bricks rays visited. Waits for the
-/// new list, since the caller has to wait for the bricks on the device anyway.
+/// Rebuilds the tree after the source's data has changed, and keeps the record of visited bricks. Waits for the new
+/// list, since the caller has to wait for the reloaded bricks anyway.
 void PagedVolume::rebuild_tree()
 {
     lister_.forget();
@@ -197,10 +197,10 @@ void PagedVolume::rebuild_tree()
     install(lister_.take(list_->sight.view, list_->sight.visibility));
 }
 
-/// Adds the bricks that the picture lacks, nearest first. Returns false if there are too few slots for all of them.
+/// Adds the bricks that the picture lacks, nearest first. Returns false if the slots cannot hold all of them.
 bool PagedVolume::list_wants(std::vector<BrickKey>& keys)
 {
-    // The sum also counts bricks that are on the device or arriving; that does not matter if there are slots for all.
+    // The sum includes bricks already on the device or arriving. Overestimating does no harm if all of them fit.
     const bool is_roomy = keys.size() + awaited_.size() + around_.size() <= slots_.free_count();
     size_t room = is_roomy ? slots_.free_count() : slots_.room();
     room -= std::min(room, keys.size());
@@ -350,8 +350,8 @@ std::optional<RegionBricks> PagedVolume::region(const VoxelBox& voxels, bool wai
 }
 
 /// Records that a brick of any level has gained or lost paint of a level 0 brick below it. Updates the view's entries
-/// for the brick and for the neighbours that its paint reaches. If `asks` is set, determines and returns whether the
-/// view now needs other bricks; otherwise returns false.
+/// for the brick and for the neighbours that its paint reaches. If `asks`, returns whether the view now needs other
+/// bricks; otherwise returns false.
 bool PagedVolume::note_painted_in(const BrickKey& key, bool is, bool asks)
 {
     std::vector<BrickKey> reached;
@@ -369,7 +369,7 @@ bool PagedVolume::note_painted_in(const BrickKey& key, bool is, bool asks)
         needs_others = needs_others || (asks && known_.may_show(sight(), reached[i]) != were_shown[i]);
         if (i > 0) note_changed(reached[i]);
         const std::optional<uint32_t> leaf = leaf_of(reached[i]);
-        if (leaf && is_visited(*leaf)) awaited_.insert(*leaf);  // a brick that was empty may now be a missing one
+        if (leaf && is_visited(*leaf)) awaited_.insert(*leaf);  // a brick that used to be empty may now be missing
     }
     return needs_others;
 }
@@ -397,8 +397,8 @@ void PagedVolume::note_painted(const Mask& mask, std::span<const int64_t> bricks
     ++reached_revision_;
     needs_changed();
     if (!needs_others || !list_) return;
-    // Paint is visible regardless of the file's densities. The current list is drawn until the new list is ready, so
-    // that a stroke does not wait for a list in each brick that it enters.
+    // Paint is visible regardless of the file's densities. The current list is drawn until the new one is ready, so a
+    // stroke does not wait for a new list whenever it enters another brick.
     list_is_outdated_ = true;
     static_cast<void>(lister_.get_ready(sight().view, sight().visibility));
 }

@@ -8,7 +8,7 @@
 
 namespace shvr {
 
-/// The directory's entry for a leaf; if rays wait for missing bricks, the entry may instruct them to wait.
+/// The directory's entry for a leaf. If rays wait for missing bricks, the entry may tell them to wait.
 uint32_t PagedVolume::entry_of(const BrickKey& leaf) const
 {
     if (rays_wait_) {
@@ -67,7 +67,7 @@ void PagedVolume::note(const BrickEvent& change)
     known_.apply(change);
     lister_.note(change);
     directory_is_stale_ = true;
-    // Rays that wait for a brick's light also wait for its neighbours, so entries of other leaves may change, too.
+    // Rays that wait for a brick's light also wait for its neighbours, so entries of other leaves may change as well.
     if (is_ready_) all_leaves_are_stale_ = true;
     const bool may_be_missing = change.kind == BrickEvent::Kind::gone || change.kind == BrickEvent::Kind::unread;
     if (const std::optional<uint32_t> leaf = may_be_missing ? leaf_of(change.key) : std::nullopt)
@@ -101,11 +101,11 @@ Resource PagedVolume::upload_directory(FrameGraph& graph)
                       "upload page directory");
 }
 
-/// Returns the copies that upload these entries; `values` receives the data to copy.
+/// Returns the copies that upload these entries. Appends the data to be copied to `values`.
 std::vector<BufferRegion> PagedVolume::changed_regions(std::vector<uint32_t> entries,
                                                        std::vector<uint32_t>& values) const
 {
-    constexpr uint32_t GAP = 16;  // distance in entries: copying a few extra bytes costs less than an extra region
+    constexpr uint32_t GAP = 16;  // in entries; copying a few unchanged entries costs less than another copy region
     std::ranges::sort(entries);
     std::vector<BufferRegion> regions;
     for (size_t first = 0, end = 0; first < entries.size(); first = end) {

@@ -15,7 +15,7 @@
 
 namespace shvr {
 
-/// Encodes bricks in index order on a background thread; batches reach the uploading thread through a short queue.
+/// Encodes bricks in index order on a background thread. A short queue passes the batches to the uploading thread.
 class ResidentVolume::Builder {
 public:
     struct Brick {
@@ -39,7 +39,7 @@ public:
     }
     Builder(const Builder&) = delete;
 
-    /// The next batch; empty if none is ready. Rethrows exceptions from reading.
+    /// The next batch; empty if none is ready. Rethrows the builder thread's exceptions.
     Batch take()
     {
         const std::scoped_lock lock(mutex_);
@@ -86,7 +86,7 @@ private:
     std::deque<Batch> ready_;
     std::exception_ptr failure_;
     bool is_stopped_ = false;
-    std::jthread thread_;  ///< declared last: it ends before the members it uses are destroyed
+    std::jthread thread_;  ///< declared last, so the thread ends before the members it uses are destroyed
 };
 
 ResidentVolume::ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
@@ -131,7 +131,7 @@ std::optional<ResidentVolume::Shape> ResidentVolume::shape_of(const gpu::Memory&
 {
     const gpu::DeviceTraits& traits = memory.traits();
     const uint64_t bricks = uint64_t(brick_counts.x) * brick_counts.y * brick_counts.z;
-    // Slot 0 stays unused: in the page table it stands for a missing brick.
+    // Slot 0 stays unused, since 0 in the page table stands for a missing brick.
     const uint32_t max_side = traits.limits.maxImageDimension3D;
     if (bricks + 1 > max_atlas_slots(gpu::BRICK_TEXELS, max_side)) return std::nullopt;
     const glm::uvec3 slots = atlas_layout(bricks + 1, gpu::BRICK_TEXELS, max_side, traits.is_cpu);
@@ -171,7 +171,7 @@ void ResidentVolume::create_images()
     for (gpu::Storage& scratch : leap_scratch_) scratch = create("leap scratch", shape->cells);
 }
 
-/// A brick at a face of the volume also supplies the atlas's border at that face.
+/// A brick at a face of the volume also fills the atlas's border at that face.
 void ResidentVolume::upload(const BrickTexels& texels, const glm::uvec3& brick)
 {
     const glm::uvec3 border = gpu::code_border(), none(0);
@@ -234,7 +234,7 @@ double ResidentVolume::loaded() const
 uint64_t ResidentVolume::bytes_for(const VolumeInfo& info, AtlasCodes codes)
 {
     const glm::u64vec3 counts(brick_counts(info.size)), of_codes(codes_side_by_side(glm::uvec3(counts)));
-    constexpr uint64_t LEAP_IMAGES = 5;  // the grid, its two scratch images, and the sample bits, which count as two
+    constexpr uint64_t LEAP_IMAGES = 5;  // the grid, its two scratch images, and the sample bits, which count twice
     return of_codes.x * of_codes.y * of_codes.z * code_bytes(codes) +
            counts.x * counts.y * counts.z * (BrickTexels::RANGE_BYTES * (1 + LEAP_IMAGES) + sizeof(uint32_t));
 }
@@ -304,7 +304,7 @@ std::optional<FrameGraph> ResidentVolume::next_refinement(const Visibility& visi
 {
     if (!refinement_is_due()) return std::nullopt;
     look_by(visibility);
-    if (!refinement_is_due()) return std::nullopt;  // the grid has to be prepared before it can be refined
+    if (!refinement_is_due()) return std::nullopt;  // refinement starts only after prepare() has built the grid
     FrameGraph graph;
     VolumeBinding volume = import(graph);
     empty_space_.refine(graph, volume, leap_input(mask.import(graph)));
@@ -323,8 +323,8 @@ void ResidentVolume::note_painted(const Mask& mask, std::span<const int64_t> bri
 {
     for (const int64_t brick : bricks) {
         const glm::uvec3 first = gpu::BRICK_CELLS * glm::uvec3(position_of(brick, mask.brick_counts()));
-        const glm::uvec3 reach(visibility_.params.paint_reach);  // paint reaches at most one voxel, hence at most one
-                                                                 // cell
+        const glm::uvec3 reach(visibility_.params.paint_reach);  // paint reaches at most one voxel, so it reaches at
+                                                                 // most one cell
         empty_space_.changed(
             {first - glm::min(first, reach), glm::min(first + gpu::BRICK_CELLS + reach, cell_counts_)});
     }

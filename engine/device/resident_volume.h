@@ -3,7 +3,7 @@
 // and the leap grid, which is updated when visibility or paint changes. Bricks have slots for their ambient light, as
 // paged bricks do. A volume that does not fit the device budget is refused with a message before any brick is read.
 //
-// One thread, the one that owns the executor.
+// Used only by the thread that owns the executor.
 
 #include "engine/device/brick_uploads.h"
 #include "engine/device/device_volume.h"
@@ -13,7 +13,7 @@ namespace shvr {
 
 class ResidentVolume final : public DeviceVolume {
 public:
-    /// Reads, encodes and uploads every brick, on `threads` workers.
+    /// Reads, encodes and uploads every brick, using `threads` worker threads.
     ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
                    const IntensityWindow& window, AtlasCodes codes, int threads, const Progress& progress = {});
     /// Starts loading for `load_on`: bricks are read and encoded on worker threads.
@@ -26,7 +26,7 @@ public:
 
     /// Device memory of such a volume, including cells and leap grid.
     static uint64_t bytes_for(const VolumeInfo& info, AtlasCodes codes);
-    /// Whether the device supports images and buffers of the required size, however much memory is free.
+    /// Whether the device supports images and buffers of the required size, regardless of free memory.
     static bool is_possible(const gpu::Memory& memory, const VolumeInfo& info, AtlasCodes codes);
 
     uint64_t brick_count() const;
@@ -45,7 +45,7 @@ public:
                           bool feedback) override;
     bool is_stale() const override { return false; }
 
-    // All bricks are on the device, so visits do not matter.
+    // Needs no feedback: all bricks are on the device, so visits do not matter.
     Feedback request_feedback(FrameGraph&, const VolumeBinding&) const override { return {}; }
     void take_feedback(const Feedback&, const gpu::FrameResult&) override {}
     void forget_visits() override {}
@@ -61,7 +61,7 @@ public:
     void want_around(const std::vector<int>&) override {}
     void prefer(const VoxelBox&) override {}
 
-    /// Waits for reads, and for the device if many bricks changed.
+    /// Waits for the reads; also waits for the device if many bricks changed.
     void renew(std::span<const VoxelBox> changed) override;
     void note_painted(const Mask& mask, std::span<const int64_t> bricks) override;
 
@@ -78,7 +78,7 @@ private:
     class Builder;
     struct Shape {
         glm::uvec3 atlas_slots;
-        ResourceDesc atlas, page_table, cells;  ///< `cells`: shared by cell ranges, leap grid and scratch
+        ResourceDesc atlas, page_table, cells;  ///< `cells`: for the cell ranges, the leap grid and its scratch images
     };
     static std::optional<Shape> shape_of(const gpu::Memory& memory, const glm::uvec3& brick_counts, AtlasCodes codes);
     void create_images();

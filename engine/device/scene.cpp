@@ -14,28 +14,28 @@ namespace shvr {
 
 namespace {
 
-// Shares of the device memory that is free when a volume is loaded.
-/// A resident volume leaves this many sixteenths of that memory free for tables and for pictures drawn in parts.
+// The following constants divide the device memory that is free when a volume is loaded.
+/// A resident volume leaves this many sixteenths of that memory free, for tables and pictures drawn in parts.
 constexpr uint64_t PICTURE_SIXTEENTHS = 1;
-/// Minimum reserved for pictures and tables: one or two megabytes of tables, the directory of bricks, and pictures in
-/// parts of 64 pixels a side.
+/// Minimum reserved for pictures and tables: one or two megabytes for tables, the directory of bricks, and pictures
+/// drawn in parts of 64 x 64 pixels.
 constexpr uint64_t MIN_PICTURE_BYTES = uint64_t{4} << 20;
 /// Fifths of that memory for paged bricks; the rest is for pictures, mask and surfaces, which may grow.
 constexpr uint64_t PAGED_FIFTHS = 3;
 /// Fifths for paged bricks if there is ambient occlusion, which takes 0.7 times as much memory as bricks of 16 bits and
 /// 1.3 times as much as those of 8 bits.
 constexpr uint64_t PAGED_FIFTHS_WITH_OCCLUSION = 2;
-/// Limit of the atlas on a CPU device, whose memory is shared with files and programs: 27 000 bricks, more than a view
-/// on a common screen needs.
+/// Limit of the atlas on a CPU device, whose memory is shared with files and programs. 27 000 bricks fit, more than a
+/// view needs on a common screen.
 constexpr uint64_t MAX_ATLAS_BYTES_OF_CPU = uint64_t{2} << 30;
-/// Paged bricks get one of these shares of the host's budget, coarser levels one, and mapped memory two.
+/// Of this many shares of the host's budget, paged bricks get one, coarser levels one, and mapped memory two.
 constexpr uint64_t HOST_SHARES = 4;
-/// Up to this many bricks, a view can show the finest level everywhere: maximum number of its leaves (page_tree.h).
+/// A view of up to this many bricks can show the finest level everywhere: the maximum of its leaves (page_tree.h).
 constexpr int64_t MAX_FINEST_BRICKS = int64_t{1} << 17;
 
-/// How far, in voxels, an offset affects the picture through interpolation and gradients.
+/// Distance in voxels up to which an offset affects the picture through interpolation and gradients.
 constexpr int64_t RAISED_REACH = 2;
-/// Maximum number of stored boxes, in case nothing collects them; beyond it, boxes are merged into one per cause.
+/// Maximum number of boxes stored if nothing collects them. Beyond it, boxes are merged into one per cause.
 constexpr size_t MAX_CHANGED = 4096;
 
 bool filters(const gpu::DeviceTraits& traits, Sampling sampling)
@@ -43,7 +43,7 @@ bool filters(const gpu::DeviceTraits& traits, Sampling sampling)
     if (sampling == Sampling::hardware && !traits.linear_r16)
         fail("render.sampling is hardware, but device ", traits.name,
              " cannot filter R16_UNORM; expected automatic or exact");
-    // A CPU filters slower than it loads and computes; a GPU's sampler is nearly free.
+    // Filtering on a CPU costs more than loading and computing; a GPU's sampler is nearly free.
     return sampling == Sampling::hardware || (sampling == Sampling::automatic && !traits.is_cpu && traits.linear_r16);
 }
 
@@ -57,13 +57,13 @@ uint64_t bytes_for_pictures(const gpu::Memory& memory)
     return std::max(MIN_PICTURE_BYTES, memory.device_bytes_left() / 16 * PICTURE_SIXTEENTHS);
 }
 
-/// Device memory for ambient occlusion, in addition to its memory per brick.
+/// Device memory for ambient occlusion, in addition to the part per brick.
 uint64_t scratch_bytes(const gpu::Memory& memory, const Scene::Options& options)
 {
     return options.with_occlusion ? Occlusion::scratch_bytes(memory.traits(), memory.device_budget()) : 0;
 }
 
-/// Device memory for the ambient light of bricks, with a quarter in reserve: layouts round up, and devices align rows.
+/// Device memory for the bricks' ambient light, plus a quarter because layouts round up and devices align rows.
 uint64_t light_bytes(uint64_t bricks)
 {
     return bricks * (Occlusion::slot_bytes() / 4 * 5);
@@ -92,7 +92,7 @@ int64_t finest_bricks(const VolumeInfo& info)
     return counts.x * counts.y * counts.z;
 }
 
-/// The budget in MiB that leaves `bytes` free in addition to the share for pictures.
+/// The budget, in MiB, that leaves `bytes` free in addition to the share for pictures.
 uint64_t budget_for(uint64_t bytes)
 {
     return (std::max(bytes + MIN_PICTURE_BYTES, bytes / (16 - PICTURE_SIXTEENTHS) * 16) >> 20) + 1;
@@ -112,7 +112,7 @@ uint64_t atlas_bytes(const gpu::Memory& memory, const VolumeInfo& info, AtlasCod
     const uint64_t room = left - std::min(left, beside);
     // Layouts of images round up.
     const uint64_t fewest = std::min(PagedVolume::MIN_SLOTS + 8, uint64_t(2 * finest_bricks(info) + 1)) * with_light;
-    const uint64_t rest = budget - left + reserved_bytes + fewest;  // more than half of the budget in the message
+    const uint64_t rest = budget - left + reserved_bytes + fewest;  // over half of the budget that the message states
     if (room < fewest)
         throw gpu::BudgetError(
             sentence(info.name, ": a picture needs ", gpu::mebibytes(beside + fewest), " of device memory",
@@ -149,7 +149,7 @@ Scene::Scene(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const
       tables_(memory)
 {
     load(options_.reserved_bytes);
-    options_.in_slices = false;  // reloading for lack of memory is done at once
+    options_.in_slices = false;  // if memory runs short, the volume is loaded again without slices
 }
 
 /// `reserved_bytes`: device memory for paint, offsets and surfaces.
@@ -180,7 +180,7 @@ void Scene::load_paged(const IntensityWindow& window, AtlasCodes codes, uint64_t
             volume_ = std::make_unique<PagedVolume>(executor_, memory_, offsets_, window, paged);
         } catch (const gpu::BudgetError&) {
             throw;
-        } catch (const gpu::MemoryError&) {  // the driver has less memory than it reports, or no block of this size
+        } catch (const gpu::MemoryError&) {  // the driver has less memory than it reports, or no free block so large
             constexpr uint64_t LEAST = uint64_t{16} << 20;
             if (paged.device_bytes / 2 < LEAST) throw;
             paged.device_bytes /= 2;
@@ -189,7 +189,7 @@ void Scene::load_paged(const IntensityWindow& window, AtlasCodes codes, uint64_t
     }
 }
 
-/// Returns false if memory is short (drivers report too much, other programs use some) and bricks can be paged.
+/// Returns false if memory is short (drivers overstate it, other programs use some) and bricks can be paged.
 bool Scene::load_resident(const IntensityWindow& window)
 {
     const AtlasCodes codes = codes_of(memory_, *source_, options_);
@@ -208,7 +208,7 @@ bool Scene::load_resident(const IntensityWindow& window)
     }
 }
 
-/// Keeps `bytes` of device memory free, in addition to the share for pictures, by loading the volume with fewer bricks.
+/// Keeps `bytes` free on the device, in addition to the pictures' share, by loading the volume with fewer bricks.
 void Scene::make_room(uint64_t bytes)
 {
     memory_.free_idle();
@@ -222,7 +222,7 @@ void Scene::make_room(uint64_t bytes)
     try {
         load(bytes);
     } catch (const gpu::MemoryError&) {
-        load(0);  // the scene stays, without the features that do not fit
+        load(0);  // the volume stays loaded, without the features that do not fit
         throw;
     }
 }
@@ -246,11 +246,11 @@ uint64_t Scene::resident_bytes(const VolumeInfo& info, AtlasCodes codes, bool wi
 AtlasCodes Scene::codes_for(const gpu::DeviceTraits& traits, VoxelType type, Sampling sampling)
 {
     if (filters(traits, sampling)) return AtlasCodes::filtered;
-    // For these types the window always covers the whole range of the type, whatever the values (window_for).
+    // For these types the window always covers the type's whole range, regardless of the values (window_for).
     return type == VoxelType::uint8 || type == VoxelType::int8 ? AtlasCodes::exact8 : AtlasCodes::exact16;
 }
 
-/// The atlas may take several images; with ambient light only one, since its values are in one image half as large.
+/// The atlas may use several images; with ambient light only one, since one image of half the size holds the light.
 uint64_t Scene::most_atlas_bytes(const gpu::DeviceTraits& traits, AtlasCodes codes, bool with_occlusion)
 {
     const uint64_t of_image = std::min(traits.max_volume_bytes / slot_code_bytes(codes),
@@ -321,7 +321,7 @@ bool Scene::show(const Document& document, std::span<const Change> changes)
 
 void Scene::show(const Document& document, const Touched& touched, const std::optional<VoxelBox>& within)
 {
-    // The steps that may fail come last, so that no change is lost.
+    // The fallible steps come last, so no change is lost if they fail.
     if (!touched.raised.empty()) note_density(document.density, touched.raised);
     if (!touched.mask_bricks.empty()) update_mask(document.mask, touched.mask_bricks, within);
     renew_density();

@@ -6,7 +6,7 @@
 //   bricks that have been loaded      -> advance() ------------------------+-> take_changed() -> views
 //   slices of ambient occlusion       -> add_occlusion() ------------------+
 //
-// Pictures of it are made by engine/picture/frame.h. One thread, the one that owns the executor.
+// engine/picture/frame.h makes pictures of a scene. Used only by the thread that owns the executor.
 
 #include <memory>
 #include <optional>
@@ -30,51 +30,51 @@ public:
     struct Options {
         Sampling sampling = Sampling::automatic;
         Paging paging = Paging::automatic;
-        /// Reserves memory for ambient occlusion: 0.7 of what bricks of 16 bits take, 1.3 of what those of 8 bits do.
+        /// Reserves memory for ambient occlusion: 0.7 times the memory of 16-bit bricks, 1.3 times that of 8-bit ones.
         bool with_occlusion = false;
         int threads = 1;  ///< workers that build bricks
         uint64_t host_bytes =
             0;                   ///< a quarter is for paged bricks, a quarter for coarser levels if the source has none
-        Progress progress{};     ///< progress of loading, now and when show() loads the volume again
+        Progress progress{};     ///< progress of loading, also when show() loads the volume again
         bool in_slices = false;  ///< the constructor only starts loading; until it is done, only load_on() may be
                                  ///< called
-        uint64_t reserved_bytes = 0;  ///< device memory kept free for what is shown in addition to the volume
+        uint64_t reserved_bytes = 0;  ///< device memory kept free for content shown in addition to the volume
                                       ///< (bytes_to_show)
     };
-    /// Loads the volume. The statistics give the intensity window and the scale of gradients. Fails if the source
+    /// Loads the volume. The statistics determine the intensity window and the scale of gradients. Fails if the source
     /// cannot be read, the budget is too small or the device does not support `options`.
     Scene(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
           const VolumeStatistics& statistics, const Options& options);
-    /// Continues loading for about `seconds`, without waiting for a disk. Returns true once all is loaded.
+    /// Continues loading for about `seconds`, without waiting for a disk. Returns true once loading is complete.
     bool load_on(double seconds) { return volume_->load_on(seconds); }
     double loaded() const { return volume_->loaded(); }
     /// Upper bound of the device memory needed to show a document.
     static uint64_t bytes_to_show(const Document& document);
-    /// Maximum sizes of the atlas of paged bricks: under a budget (atlas_share), on a device (most_atlas_bytes).
+    /// Maximum sizes of the atlas of paged bricks: under a budget (atlas_share) and on a device (most_atlas_bytes).
     static uint64_t atlas_share(uint64_t device_budget, bool with_occlusion);
     static uint64_t most_atlas_bytes(const gpu::DeviceTraits& traits, AtlasCodes codes, bool with_occlusion);
-    /// Device memory of a resident volume, with its ambient light.
+    /// Device memory of a resident volume, including its ambient light.
     static uint64_t resident_bytes(const VolumeInfo& info, AtlasCodes codes, bool with_occlusion);
-    /// The format in which the device holds codes of voxels of `type`. Fails if the device does not support `sampling`.
+    /// How the device stores the codes of voxels of `type`. Fails if the device does not support `sampling`.
     static AtlasCodes codes_for(const gpu::DeviceTraits& traits, VoxelType type, Sampling sampling);
-    /// Whether an image of the device could hold all bricks of the source, however much memory is free.
+    /// Whether one image of the device could hold all bricks of the source, regardless of free memory.
     static bool can_be_resident(const gpu::Memory& memory, const VolumeSource& source, const Options& options);
     /// Whether such a scene would be paged even if the device held nothing else.
     static bool pages_alone(const gpu::Memory& memory, const VolumeSource& source, const Options& options);
-    /// Whether such a scene would be resident and fits in addition to everything on the device now. Fails if the device
+    /// Whether such a scene would be resident and fits in addition to everything now on the device. Fails if the device
     /// does not support `options`.
     static bool fits_now(gpu::Memory& memory, const VolumeSource& source, const Options& options);
-    /// Fails if the sizes alone imply that such a scene is impossible; reads no voxels.
+    /// Fails if the sizes alone show that such a scene is impossible; reads no voxels.
     static void check_sizes(gpu::Memory& memory, const VolumeSource& source, const Options& options);
 
     const VolumeInfo& info() const { return volume_->info(); }
     const VolumeStatistics& statistics() const { return statistics_; }
     const gpu::DeviceTraits& traits() const { return memory_.device().traits(); }
     DeviceVolume& volume() { return *volume_; }
-    /// Whether pictures draw the finest level everywhere, as the source has no other: a larger budget would make the
-    /// volume resident, and budgets must not change pictures. Live views draw it as coarsely as the screen allows.
+    /// Whether pictures draw the finest level everywhere because the source has no other: a larger budget would make
+    /// the volume resident, and budgets must not change pictures. Live views draw coarser levels as needed.
     bool draws_finest() const { return draws_finest_; }
-    /// Decides which voxels a brush or touch may select where values share a code; null: every value has its own code.
+    /// Decides which voxels a brush or touch may select if several values share a code; null if each has its own code.
     ThresholdBricks* threshold_bricks() { return threshold_bricks_.get(); }
     const DeviceMask& mask() const { return *mask_; }
     Occlusion& occlusion() { return occlusion_; }
@@ -99,7 +99,7 @@ public:
     void catch_up(const Document& document);
     /// Updates the mask in these bricks. `within`: a box that holds all changed voxels.
     void update_mask(const Mask& mask, std::span<const int64_t> bricks, const std::optional<VoxelBox>& within = {});
-    /// Updates the offsets in these boxes. Offsets never raise intensities above the volume's window.
+    /// Updates the offsets in these boxes. Offsets never raise intensities above the intensity window.
     void update_density(const DensityField& field, std::span<const VoxelBox> changed);
 
     /// Sets the opaque balls and rods that end rays: `surfaces`, and those of the trace in the colours of `groups`.
@@ -128,7 +128,7 @@ public:
         VoxelBox voxels;
         Cause cause = Cause::edit;
     };
-    /// Voxels that may look different since the last call, each box with its cause.
+    /// Voxels whose appearance may have changed since the last call, in boxes with their causes.
     std::vector<Changed> take_changed();
     bool has_changed() const { return !changed_.empty(); }
 
@@ -142,8 +142,8 @@ public:
     /// ambient occlusion until the look switches it off.
     bool has_occlusion(const Look& look);
     bool occlusion_has_no_room() const { return occlusion_has_no_room_; }
-    /// Frees memory that pictures can do without, and adds a message with the reason `why`. Returns false if there was
-    /// no such memory. No graph that uses the scene may be under construction.
+    /// Frees memory that pictures can do without, and adds a message that states the reason `why`. Returns false if
+    /// there was no such memory. Must not be called while a graph that uses the scene is under construction.
     bool give_way(const std::string& why);
     /// Requests the bricks that the look's ambient occlusion needs.
     void want_occlusion(const Look& look);

@@ -39,7 +39,7 @@ SceneEstimate estimate_scene(const VolumeSource& source, Paging paging, bool wit
                                         size_text(device_budget), ", or render.paging automatic");
         return estimate;
     }
-    // All coarser levels together take a third of the finest level. The atlas takes no more than its share.
+    // All coarser levels together take a third of the finest level. The atlas never exceeds its share.
     estimate.device_bytes =
         std::min({all / 3 * 4, Scene::atlas_share(device_budget, with_occlusion), most_atlas_bytes});
     const uint64_t levels = bytes_of_levels(source);

@@ -8,11 +8,11 @@ namespace shvr {
 
 namespace {
 
-/// Points of rays and boxes are off by a few ulps of the largest number involved; this tolerance allows 16 ulps.
+/// Points of rays and boxes are off by a few ulps of the largest number involved; this allows 16 ulps.
 constexpr double ROUNDING = 0x1p-20;
 /// Replaces infinity, since zero times infinity is NaN.
 constexpr double FAR = 1e20;
-/// Maximum number of unchanged values that are sent again rather than splitting a copy.
+/// Up to this many unchanged values are sent again if this avoids splitting a copy.
 constexpr uint32_t SHORT_GAP = 16;
 
 template <class Value>
@@ -29,7 +29,7 @@ ResourceDesc desc_of(uint64_t values)
                         {TEXELS<Value> * uint32_t(std::min<uint64_t>(values, gpu::SURFACES_IN_ROW)), uint32_t(rows)});
 }
 
-/// Adds copy regions for the values begin ... end, contiguous in a buffer from `offset` on; whole rows are joined.
+/// Adds copy regions for the values begin ... end, contiguous in a buffer from `offset` on. Joins whole rows.
 template <class Value>
 void add_regions(uint32_t begin, uint32_t end, uint64_t offset, std::vector<ImageRegion>& regions)
 {

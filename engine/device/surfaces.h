@@ -1,6 +1,6 @@
 #pragma once
 // The opaque surfaces of a scene on the device, and the parameters for drawing them with a camera. Without surfaces,
-// nothing is allocated on the device. One thread, the one that owns the memory.
+// nothing is allocated on the device. Used only by the thread that owns the memory.
 
 #include <optional>
 
@@ -26,7 +26,7 @@ public:
 
     /// Handles for a graph that must be submitted; uploads changes. Null if there are no surfaces.
     std::optional<SurfaceList> upload(FrameGraph& graph);
-    /// The parameters for drawing with `planes` in `volume`, except the probe's.
+    /// The parameters for drawing with `planes` in `volume`, without those of the probe.
     gpu::SurfaceParams params(const RayPlanes& planes, const glm::uvec2& pixels, const VolumeInfo& volume) const;
 
 private:
@@ -34,7 +34,7 @@ private:
     gpu::Memory& memory_;
     SurfaceForest forest_;
     gpu::Storage nodes_, list_;
-    bool is_sent_ = false;  ///< the device is up to date, except for values that `replace` wrote
+    bool is_sent_ = false;  ///< whether the device is up to date, except for values written by `replace`
 };
 
 }  // namespace shvr

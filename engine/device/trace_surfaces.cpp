@@ -115,7 +115,7 @@ public:
         lower_ = glm::min(lower_, position - radius);
         upper_ = glm::max(upper_, position + radius);
     }
-    /// Returns the box enlarged by one voxel on each side, because of nodes without a radius.
+    /// Returns the box enlarged by one voxel on each side, to cover nodes without a radius.
     VoxelBox box(const glm::dvec3& spacing) const
     {
         if (lower_.x > upper_.x) return {};
@@ -135,7 +135,7 @@ VoxelBox trace_reach(const TraceGraph& trace, std::span<const Change> changes, c
     for (const auto& [group, radius] : trace.internode_radii()) thickest = std::max(thickest, radius);
     const auto add_node = [&](uint32_t number) {
         const auto found = trace.nodes().find(number);
-        if (found == trace.nodes().end()) return;  // removed: the node's own change has its old position
+        if (found == trace.nodes().end()) return;  // the node was removed; its own change contains its old position
         reach.add(found->second);
         reach.add(found->second.position, thickest);
     };

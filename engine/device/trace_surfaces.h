@@ -17,7 +17,7 @@ namespace shvr {
 /// the finest axis.
 std::vector<KeyedSurface> surfaces_of(const TraceGraph& trace, const Groups& groups, const glm::dvec3& spacing);
 
-/// The keys of all surfaces that changes affect, and those of these surfaces that still exist.
+/// The keys of all surfaces that changes affect, and those of the affected surfaces that still exist.
 struct ChangedSurfaces {
     std::vector<uint64_t> keys;
     std::vector<KeyedSurface> now;

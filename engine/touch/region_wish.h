@@ -1,6 +1,6 @@
 #pragma once
 // The region around a moving probe in which relevance should be known. The window's mirror and simulations
-// (haptics/replay) request regions by the same rule; neither folder includes the other, so the rule is here.
+// (haptics/replay) request regions by this rule. Neither of their folders may include the other, so the rule is here.
 
 #include <algorithm>
 #include <cmath>
@@ -9,12 +9,12 @@
 
 namespace shvr {
 
-/// The probe's ball, and the time that an answer takes. Physical units and seconds.
+/// The probe's ball in physical units, and the time in seconds until an answer arrives.
 struct RegionWish {
     glm::dvec3 point{0.0};     ///< the ball's centre
     double radius = 1.0;       ///< radius of the ball
     glm::dvec3 velocity{0.0};  ///< velocity of `point`
-    double latency_s = 0.0;    ///< time from requesting a region until it is felt
+    double latency_s = 0.0;    ///< time from requesting a region until the servo uses it
 
     /// Distance and direction in which the ball moves until the answer arrives.
     glm::dvec3 travel() const { return latency_s * velocity; }
@@ -28,8 +28,8 @@ struct RegionWish {
     }
 };
 
-/// Time from a request until the servo feels the answer, in the window at 60 pictures a second: up to 8 ms until the
-/// mirror runs, then one picture for the pass. Simulations use this time.
+/// Time from a request until the servo uses the answer, in a window at 60 pictures a second: up to 8 ms until the
+/// mirror runs, then one picture for the pass. Simulations assume this time.
 inline constexpr double WINDOW_LATENCY_S = 0.024;
 
 /// Whether another region is due. `held`: current region, with `covers(centre, radius)`. `margin`: half its side minus

@@ -1,6 +1,6 @@
 #pragma once
-// How touch pulls the probe. The session stores these choices and haptics implements them; neither folder includes the
-// other, so both include this file.
+// How touch pulls the probe. The session stores these choices and haptics implements them. Neither of these folders may
+// include the other, so both include this file.
 
 #include <cstdint>
 
@@ -10,7 +10,7 @@ namespace shvr {
 
 /// Selects what pulls the probe (haptics/modes.h).
 enum class TouchMode : uint8_t {
-    proximity,  ///< the mean of all relevant voxels in the ball
+    proximity,  ///< pulls towards the mean of all relevant voxels in the ball
     surface,    ///< holds the probe where enough of the ball is relevant, until the probe moves towards the camera
     object,     ///< like proximity, restricted to the object that was touched first
 };
