@@ -8,7 +8,7 @@ namespace shvr {
 
 namespace {
 
-/// Returns the absolute path in a variable; the specification says to ignore relative ones.
+/// Returns an environment variable that holds an absolute path; empty otherwise: XDG says to ignore relative paths.
 std::filesystem::path folder_from(const char* variable)
 {
     const char* const value = std::getenv(variable);

@@ -1,22 +1,22 @@
 #pragma once
-// Locates the data files that the program ships with, and the user's folders for its files (XDG Base Directory
-// Specification). Any thread.
+// Locates the data files that ship with the program, and the user's folders for configuration and caches (XDG Base
+// Directory Specification). Any thread.
 
 #include <filesystem>
 #include <string>
 
 namespace shvr {
 
-/// The folder `name` in $SHVR_ASSETS, or else in the installed or built tree. Empty if there is none.
+/// Returns the first existing folder `name` in $SHVR_ASSETS, the installed tree or the source tree; empty: none exists.
 std::filesystem::path asset_folder(const std::string& name);
 
-/// First page of the user manual, in HTML: that of the installed or the built tree, or, where neither has one, its path
-/// in an installed tree.
+/// Returns the path of the user manual's first page (HTML) in the installed tree, or else in the build tree. If neither
+/// has the page, returns the path where an installation would have it.
 std::filesystem::path manual_page();
 
-/// $XDG_CONFIG_HOME/shvr or ~/.config/shvr: preferences. Empty if the environment gives neither; may not exist.
+/// Preferences folder, may be missing: $XDG_CONFIG_HOME/shvr or ~/.config/shvr. Empty if that and $HOME are unset.
 std::filesystem::path config_folder();
-/// $XDG_CACHE_HOME/shvr or ~/.cache/shvr: files that can be made again. Empty if the environment gives neither.
+/// Folder of recomputable files: $XDG_CACHE_HOME/shvr or ~/.cache/shvr. Empty if that variable and $HOME are unset.
 std::filesystem::path cache_folder();
 
 }  // namespace shvr

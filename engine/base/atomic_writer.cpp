@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Permissions of the file to be replaced, if it exists.
+/// Returns the permissions of the file that will be replaced; null if there is no such file.
 std::optional<mode_t> permissions_of_old_file(const fs::path& path)
 {
     if (!path.has_filename()) fail("'", path.string(), "': cannot be written; expected the name of a file");
@@ -37,7 +37,7 @@ std::optional<mode_t> permissions_of_old_file(const fs::path& path)
     return status.st_mode & 07777;
 }
 
-/// Names of temporary files, for signal handlers. If all slots are taken, a writer's file is not listed.
+/// Names of temporary files, for signal handlers to remove. If all slots are taken, handlers miss further files.
 std::array<std::atomic<const char*>, 64> temporary_names{};
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
@@ -55,7 +55,7 @@ constexpr std::chrono::hours FOREIGN_AGE{24};
 /// A long append syncs each time after this many bytes, so that the final sync, which cannot be interrupted, is short.
 constexpr uint64_t BYTES_PER_SYNC = uint64_t{64} << 20;
 
-/// The host's name as a part of a file name.
+/// Returns the host's name with only those characters that are safe in a file name.
 std::string host_of_names()
 {
     char name[256] = {};
@@ -69,7 +69,7 @@ std::string host_of_names()
     return safe.empty() ? "host" : safe;
 }
 
-/// The process and host of ".shvr-PID-N-HOST.tmp"; earlier versions left out the host. Null for other names.
+/// Process and host named in the temporary file name ".shvr-PID-N-HOST.tmp". Files of earlier versions name no host.
 struct Owner {
     pid_t process = 0;
     std::string host{};  ///< empty: not stated
@@ -158,7 +158,7 @@ void sync_folder(const fs::path& path)
     const FileDescriptor descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     bool is_synced = descriptor && ::fsync(descriptor.number()) == 0;
     while (!is_synced && descriptor && errno == EINTR) is_synced = ::fsync(descriptor.number()) == 0;
-    // EINVAL: a file system that cannot sync folders. EACCES: a folder we may write to but not list.
+    // EINVAL: the file system cannot sync folders. EACCES: we may write to the folder, but not open it for reading.
     if (!is_synced && errno != EINVAL && errno != EACCES) {
         fail(path.string(),
              ": is written, but a power cut could lose it; its folder cannot be synced: ", reason_of(errno));
@@ -183,7 +183,7 @@ void AtomicWriter::append(std::span<const std::byte> content)
         const ssize_t count = ::write(descriptor_.number(), content.data(), content.size());
         if (count < 0 && errno == EINTR) continue;
         if (count < 0) refuse(errno);
-        // Some network file systems report "nothing written" for "full".
+        // Some network file systems report a full disk as a write of 0 bytes.
         if (count == 0) refuse(ENOSPC);
         content = content.subspan(size_t(count));
         unsynced_bytes_ += uint64_t(count);
@@ -217,7 +217,7 @@ void AtomicWriter::read_back(int64_t offset, std::span<std::byte> content) const
 
 void AtomicWriter::commit()
 {
-    // File systems without permissions refuse this; then there is nothing to preserve.
+    // File systems without permissions refuse fchmod (EPERM, ENOTSUP); there are then no permissions to preserve.
     if (old_permissions_ && ::fchmod(descriptor_.number(), *old_permissions_) != 0 && errno != EPERM &&
         errno != ENOTSUP) {
         refuse(errno);

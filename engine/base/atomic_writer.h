@@ -19,12 +19,12 @@ namespace shvr {
 /// Syncs the folder that contains `path`, so that a new or renamed file survives a power cut.
 void sync_folder(const std::filesystem::path& path);
 
-/// The file to which a path leads, following symbolic links, even dangling ones. Writers replace links, so a path that
-/// a user names as an output is resolved first and written where it leads.
+/// Returns the file to which a path leads, following symbolic links, even dangling ones. Writers replace links, so
+/// callers resolve an output path given by the user first, to write the file where the link leads.
 std::filesystem::path link_target(const std::filesystem::path& path);
 
-/// Removes files that killed writers have left in a folder: temporary files of dead processes of this host, and those
-/// of other hosts that are older than a day. Never fails.
+/// Removes the temporary files that killed writers left in a folder: those of dead processes of this host, and those of
+/// other hosts that are older than a day. Never fails.
 void collect_temporary_files(const std::filesystem::path& folder);
 
 /// The product, or null if it exceeds 2^63 - 1.

@@ -13,7 +13,7 @@
 
 namespace shvr {
 
-/// The cause is outside the program: a file, an argument, a device. `what()` is one sentence for the user.
+/// An error whose cause is outside the program: a file, an argument, a device. `what()` is one sentence for the user.
 class Error : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;

@@ -9,7 +9,7 @@
 #include "engine/base/error.h"
 #include "engine/base/plane.h"
 
-// Short names of constants are those of the paper.
+// The short names of constants are those used in the paper (see flip.h).
 
 namespace shvr {
 namespace {
@@ -31,7 +31,7 @@ const glm::dmat3 RGB_TO_XYZ = make_rgb_to_xyz();
 const glm::dmat3 XYZ_TO_RGB = glm::inverse(RGB_TO_XYZ);
 const glm::dvec3 WHITE = RGB_TO_XYZ * glm::dvec3(1.0);
 
-/// The linear opponent space in which contrast sensitivity was measured.
+/// Converts to the linear opponent colour space in which contrast sensitivity was measured.
 glm::dvec3 ycxcz_of_rgb(const glm::dvec3& rgb)
 {
     const glm::dvec3 xyz = RGB_TO_XYZ * rgb / WHITE;
@@ -44,7 +44,7 @@ glm::dvec3 rgb_of_ycxcz(const glm::dvec3& color)
     return XYZ_TO_RGB * (glm::dvec3(y + color.y / 500.0, y, y - color.z / 200.0) * WHITE);
 }
 
-/// CIELab whose colourfulness grows with lightness (Hunt effect).
+/// Converts to CIELab, and scales a and b by the lightness, since colours look more vivid when lighter (Hunt effect).
 glm::dvec3 hunt_lab_of_rgb(const glm::dvec3& rgb)
 {
     const auto curve = [](double t) {
@@ -86,7 +86,7 @@ constexpr Sensitivity ACHROMATIC{1.0, 0.0047, 0.0, 1e-5};
 constexpr Sensitivity RED_GREEN{1.0, 0.0053, 0.0, 1e-5};
 constexpr Sensitivity BLUE_YELLOW{34.1, 0.04, 13.5, 0.025};
 
-/// Normalises the sum of Gaussians so that its weights in the plane add up to 1. Each Gaussian is separable.
+/// Blurs with a sum of Gaussians, normalised so that all weights in the plane add up to 1. Each Gaussian is separable.
 Plane blurred_as_seen(const Plane& plane, const Sensitivity& sensitivity, double pixels_per_degree,
                       FilterProgress& progress)
 {
@@ -98,7 +98,7 @@ Plane blurred_as_seen(const Plane& plane, const Sensitivity& sensitivity, double
     if (sensitivity.a2 == 0.0) return result;
     const auto weights2 = gaussian_weights(sigma_of(sensitivity.b2), radius);
     const Plane second = filtered(plane, weights2, weights2, progress);
-    // In a kernel that sums to 1, the middle weight is the reciprocal of the sum of the unscaled kernel.
+    // The middle weight of a 1D kernel that sums to 1 is the reciprocal of the unscaled kernel's sum; squared for 2D.
     const auto volume_of = [&](double a, double b, const std::vector<double>& weights) {
         const double middle = weights[size_t(radius)];
         return a * std::sqrt(std::numbers::pi / b) / (middle * middle);
@@ -124,7 +124,7 @@ glm::dvec3 hunt_lab_at(const Planes& ycxcz, size_t pixel)
     return hunt_lab_of_rgb(glm::clamp(rgb_of_ycxcz(color), 0.0, 1.0));
 }
 
-/// HyAB distance, compressed: large differences count less than proportionally.
+/// Returns the HyAB distance of two colours, compressed: large distances grow less than proportionally.
 double color_distance(const glm::dvec3& a, const glm::dvec3& b)
 {
     constexpr double QC = 0.7;

@@ -11,7 +11,7 @@ namespace {
 
 uint8_t byte_of(double share)
 {
-    // Written so that NaN becomes 0; lround is undefined for NaN.
+    // The negated comparison is also true for NaN, which becomes 0; lround is undefined for NaN.
     if (!(share > 0.0)) return 0;
     return uint8_t(std::lround(std::min(share, 1.0) * 255.0));
 }

@@ -23,7 +23,7 @@ namespace {
 
 using Bytes = std::span<const std::byte>;
 
-// Maximum file size: the largest pictures have 1 GiB of pixels, and noise does not compress.
+// Maximum file size: pixels take at most 1 GiB, and a PNG of noise is no smaller than its pixels.
 constexpr int64_t MAX_PNG_BYTES = int64_t{2} << 30;
 
 // The maximum expansion of a deflate stream.
@@ -56,7 +56,7 @@ std::optional<int64_t> bits_of_pixel(Bytes file)
 
 void check_size(int64_t width, int64_t height, std::string_view name)
 {
-    // Compares by division, since the product of hostile sizes could overflow.
+    // Divides instead of multiplying, since the product of sizes in a malicious file could overflow.
     if (width < 1 || height < 1 || width > MAX_IMAGE_PIXELS / height) {
         fail(name, ": the picture is ", width, " x ", height, " pixels; expected 1 to ", MAX_IMAGE_PIXELS, " of them");
     }
@@ -103,7 +103,7 @@ struct PngImage {
     ~PngImage() { png_image_free(&image); }
 };
 
-/// Calls libpng, which reports errors by longjmp: frames that it skips must hold no object with a destructor.
+/// Calls libpng, which reports errors by longjmp. The stack frames skipped then must hold no object with a destructor.
 template <class Call>
 bool succeeds(png_structp png, const Call& call)
 {
@@ -112,7 +112,7 @@ bool succeeds(png_structp png, const Call& call)
     return true;
 }
 
-/// Encodes a picture row by row, and passes on the bytes as they are produced.
+/// Encodes a picture row by row, and passes each piece of the file to `take` as libpng produces it.
 class PngStream {
 public:
     using Take = std::function<void(Bytes)>;

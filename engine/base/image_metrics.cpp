@@ -71,7 +71,7 @@ double ssim_of(const Plane& a, const Plane& b, const Progress& progress)
 PixelDifference compare_pixels(const Image8& a, const Image8& b)
 {
     check_comparable(a, b);
-    // Sums are integers, so the result does not depend on the order of summation.
+    // Sums integers, so that the result does not depend on the order of summation.
     std::array<int64_t, 4> sums{}, squares{};
     int64_t over_1 = 0, over_4 = 0;
     int largest = 0;
@@ -135,7 +135,7 @@ std::optional<std::string> why_not_within(const PixelDifference& difference, con
 {
     std::string reasons;
     const auto check = [&](const char* what, double found, double limit, const char* unit) {
-        // Written such that a NaN counts as exceeding every limit.
+        // The comparison is written so that NaN counts as exceeding every limit.
         if (found <= limit) return;
         if (!reasons.empty()) reasons += "; ";
         reasons += sentence(what, " is ", found, unit, ", expected at most ", limit, unit);

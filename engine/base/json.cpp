@@ -27,7 +27,7 @@ std::string shortened(std::string text)
     return text.substr(0, end) + "...";
 }
 
-/// The value as JSON on one line. JSON itself escapes all control characters except DEL.
+/// Returns the value as JSON on one line. JSON already escapes all control characters except DEL.
 std::string shown(const json& value)
 {
     std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
@@ -42,7 +42,7 @@ std::string shown_key(const std::string& key)
     return shortened(quoted.substr(1, quoted.size() - 2));
 }
 
-/// The parser's error message without its list of expected tokens, made printable ASCII: the parser quotes raw bytes.
+/// Returns the parser's message, without its list of expected tokens and in printable ASCII, since it quotes raw bytes.
 std::string reason_of(const json::exception& error)
 {
     std::string reason = error.what();

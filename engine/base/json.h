@@ -25,7 +25,7 @@
 
 namespace shvr {
 
-/// The accepted numbers: from `lower` to `upper`, both inclusive.
+/// The range of accepted numbers: from `lower` to `upper`, both inclusive.
 struct NumberRange {
     double lower;
     double upper;
@@ -34,7 +34,7 @@ struct NumberRange {
 };
 /// All finite numbers.
 NumberRange any_number();
-/// The numbers from `lower`, which must be above 0, to `upper`.
+/// Returns the range from `lower`, which must be above 0, to `upper`; messages then say "a number above 0".
 NumberRange above_zero(double lower, double upper);
 
 /// Limits on a text, checked before its values are read.
@@ -46,7 +46,7 @@ struct JsonLimits {
 
 class JsonDocument;
 
-/// A value, possibly missing, and its place in the document. Refers to the document, which must outlive the node.
+/// A value in a document, or the place of a missing value. Refers to the document, which must outlive the node.
 class JsonNode {
 public:
     bool exists() const { return value_ != nullptr; }
@@ -82,7 +82,7 @@ public:
     /// The elements of an array, at least `least` and at most `most` of them; fails for anything else.
     std::vector<JsonNode> elements(size_t least = 0, size_t most = SIZE_MAX) const;
 
-    // These return the value, and fail if it is missing.
+    // The functions below return the value, and fail if it is missing.
     double number(const NumberRange& range) const;
     int64_t whole(int64_t lower, int64_t upper) const;  ///< 3.0 counts as whole
     bool flag() const;
@@ -109,7 +109,7 @@ public:
     }
     std::string dump() const;  ///< serialized as JSON without spaces
 
-    // These return the value, or `fallback` if it is missing.
+    // The functions below return the value, or `fallback` if it is missing.
     double number(double fallback, const NumberRange& range) const { return exists() ? number(range) : fallback; }
     int64_t whole(int64_t fallback, int64_t lower, int64_t upper) const
     {
@@ -139,8 +139,8 @@ private:
 
     const JsonDocument* document_;
     const nlohmann::json* value_;
-    // For a missing value: the innermost existing object, and the rest of the key below that object. The key of an
-    // existing value is found by searching the document, which happens only on refusal.
+    // If the value is missing: the innermost object that exists, and the rest of the key below it. The key of an
+    // existing value is not stored: a refusal finds it by searching the document.
     const nlohmann::json* parent_ = nullptr;
     std::string missing_;
 };

@@ -38,8 +38,8 @@ private:
     int64_t rows_ = 0;
 };
 
-/// Correlates the plane with `across` along rows and `down` along columns. Both weights have odd lengths; their middle
-/// element applies to the pixel itself. The picture's border is repeated outwards.
+/// Correlates the plane with the weights `across` along rows and `down` along columns. Both have odd lengths; the
+/// middle weight applies to the pixel itself. Outside the picture, the nearest pixel of its border is used.
 Plane filtered(const Plane& plane, std::span<const double> across, std::span<const double> down,
                FilterProgress& progress);
 

@@ -1,5 +1,5 @@
 #pragma once
-// How long-running work reports progress and is stopped, and the progress line that a user sees.
+// Reports the progress of long-running work and stops such work; also the progress line that a user sees.
 
 #include <functional>
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace shvr {
 
-/// Long-running work calls this at intervals, on its own thread, with the completed fraction (0 ... 1). An exception
-/// thrown by it ends the work, which leaves nothing half done. If the function is empty, progress is not reported.
+/// A function that long-running work calls at intervals, on its own thread, with the completed fraction (0 ... 1). If
+/// the function throws, the work ends and leaves no partial result. If it is empty, progress is not reported.
 using Progress = std::function<void(double fraction)>;
 
 /// The work was stopped by the user.
@@ -23,7 +23,7 @@ inline void tell(const Progress& progress, double fraction)
     if (progress) progress(fraction);
 }
 
-/// Progress of one part of the work: maps the part's 0 ... 1 to `lower` ... `upper` of the whole. Copies `progress`.
+/// Returns the Progress for one part of the work: maps the part's 0 ... 1 to `lower` ... `upper` of the whole.
 inline Progress part_of(const Progress& progress, double lower, double upper)
 {
     if (!progress) return {};

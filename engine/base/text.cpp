@@ -65,7 +65,7 @@ std::string printable(std::string_view text)
 {
     std::string shown(text);
     std::replace_if(shown.begin(), shown.end(), is_control, '?');
-    // U+0080 to U+009F in UTF-8: terminals interpret U+009B like ESC [.
+    // Replaces U+0080 to U+009F (in UTF-8), too: terminals interpret U+009B like ESC [.
     for (size_t at = 0; at + 1 < shown.size(); ++at)
         if (shown[at] == '\xc2' && static_cast<unsigned char>(shown[at + 1]) >= 0x80 &&
             static_cast<unsigned char>(shown[at + 1]) <= 0x9f)

@@ -27,13 +27,13 @@ bool has_controls(std::string_view text);
 std::string printable(std::string_view text);
 /// Prepares a text for a message: in quotes, at most 60 characters, without control characters.
 std::string in_quotes(std::string_view text);
-/// Returns the text up to the next line end, and removes both from `rest`. "\r\n" counts as one line end.
+/// Removes the first line and its line end from `rest`, and returns the line. "\r\n" counts as one line end.
 std::string_view take_line(std::string_view& rest);
 
 std::optional<int64_t> whole_of(std::string_view word);
 std::optional<double> number_of(std::string_view word);  ///< may be NaN or infinite
 
-/// The shortest digits that parse back to the same number.
+/// Returns the fewest digits that parse back to exactly the same number.
 std::string digits_of(double value);
 std::string digits_of(const glm::dvec3& value);  ///< separated by spaces
 std::string digits_of(const glm::i64vec3& value);

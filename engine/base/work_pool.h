@@ -22,9 +22,9 @@ class WorkPool {
 public:
     using Task = std::function<void(int64_t task, int worker)>;
 
-    /// A waiting thread calls `poll` every 50 ms, whether it waits for one batch or many short ones. If `poll` throws,
-    /// the batch being waited for ends and the exception is rethrown. Workers call `before_task` before every task; an
-    /// exception from `before_task` counts as an exception from the task.
+    /// The waiting thread calls `poll` every 50 ms, whether it waits for one long batch or for many short ones. If
+    /// `poll` throws, the current batch ends and the exception is rethrown. Workers call `before_task` before every
+    /// task; an exception from `before_task` counts as an exception from the task.
     explicit WorkPool(int threads, std::function<void()> poll = {}, std::function<void()> before_task = {});
     /// Drops tasks that have not started, and waits for the rest.
     ~WorkPool();

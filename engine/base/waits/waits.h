@@ -1,13 +1,13 @@
 #pragma once
-// Ends long waits of a thread, such as those for a network, when its owner no longer wants the result. Code that waits
-// asks `wait_is_over` every few milliseconds and throws `Stopped`. Any thread may call these.
+// Ends long waits of a thread, such as waits for a network, once the result is no longer wanted. Waiting code calls
+// `wait_is_over` every few milliseconds, and throws `Stopped` if it returns true. Any thread may call these functions.
 
 #include <atomic>
 #include <functional>
 
 namespace shvr {
 
-/// During its lifetime, waits of this thread end as soon as `is_over` returns true. Nested objects: each can end them.
+/// While this object exists, waits of this thread end once `is_over` returns true. If objects nest, any of them can.
 class WaitsUntil {
 public:
     explicit WaitsUntil(std::function<bool()> is_over);
