@@ -87,7 +87,7 @@ void Device::check(VkResult result, const char* call) const
     gpu::check(result, call);
 }
 
-/// Returns the driver's fault report; empty if there is none. Lists only the first of many addresses and codes.
+/// Returns the driver's fault report, with only the first of many addresses and codes; empty if there is none.
 std::string Device::fault_in_words() const
 {
     constexpr uint32_t MOST = 4;
@@ -96,7 +96,7 @@ std::string Device::fault_in_words() const
     if (get_fault_(device_, &counts, nullptr) < 0) return {};
     std::vector<VkDeviceFaultAddressInfoEXT> addresses(counts.addressInfoCount);
     std::vector<VkDeviceFaultVendorInfoEXT> codes(counts.vendorInfoCount);
-    counts.vendorBinarySize = 0;  // the vendor binary, a dump for the driver's developers, is not requested
+    counts.vendorBinarySize = 0;  // leaves out the vendor binary, a dump for the driver's developers
     VkDeviceFaultInfoEXT info{.sType = VK_STRUCTURE_TYPE_DEVICE_FAULT_INFO_EXT,
                               .pAddressInfos = addresses.data(),
                               .pVendorInfos = codes.data()};
@@ -169,7 +169,7 @@ void Device::create_instance(const DeviceOptions& options)
         .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
         .messageSeverity =
             VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
-        // Performance advice is off: it objects to using the layout GENERAL alone, which avoids all layout transitions.
+        // Performance advice is off: it objects to the layout GENERAL, the only one used here (no transitions needed).
         .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
         .pfnUserCallback = on_message,
         .pUserData = this};
@@ -279,9 +279,9 @@ void Device::create_device(const DeviceOptions& options)
     VkPhysicalDeviceFeatures2 has{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &has12};
     vkGetPhysicalDeviceFeatures2(physical_, &has);
 
-    // Every device supports both. Robust images make out-of-bounds reads 0: word_at(-1) of density_exact.glsl at the
-    // atlas's edge, whose result is unused, would otherwise be undefined. No kernel accesses buffers out of bounds
-    // (bounds_slow_test.cpp); robust buffers make such a bug a wrong pixel, not a lost device or corrupted paint.
+    // Every device supports both. With robust images, out-of-bounds reads return 0; word_at(-1) of density_exact.glsl
+    // at the atlas's edge, whose result is unused, would else be undefined. No kernel accesses buffers out of bounds
+    // (bounds_slow_test.cpp); with robust buffers such a bug gives a wrong pixel, not a lost device or corrupted paint.
     VkPhysicalDeviceVulkan13Features want13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
                                             .robustImageAccess = VK_TRUE,
                                             .synchronization2 = VK_TRUE,
@@ -373,7 +373,7 @@ std::vector<std::string> Device::take_validation_messages()
 VkBool32 Device::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                             const VkDebugUtilsMessengerCallbackDataEXT* data, void* self)
 {
-    // The loader also sends messages here; they concern layers that the environment adds.
+    // The Vulkan loader sends messages here as well; they concern layers added by the environment.
     if (data->pMessageIdName && std::strcmp(data->pMessageIdName, "Loader Message") == 0) return VK_FALSE;
     Device& device = *static_cast<Device*>(self);
     const std::lock_guard lock(device.messages_mutex_);

@@ -1,8 +1,8 @@
 #pragma once
 // The Vulkan device: instance, physical device, one queue, capabilities, names for its objects, and the validation
-// layer's messages. Only Vulkan 1.3 is required; optional features are probed here and reported in `traits`.
+// layer's messages. Only Vulkan 1.3 is required; optional features are detected here and reported in `traits`.
 //
-// One thread at a time may use a device. Validation messages may arrive on any thread and are collected under a lock.
+// Used by one thread at a time. Validation messages may arrive on any thread and are collected under a lock.
 
 #include <algorithm>
 #include <functional>
@@ -19,7 +19,7 @@
 namespace shvr::gpu {
 
 /// The device stopped responding: its driver was reset, or the device was removed. All of its contents are lost, and
-/// every later call fails likewise until the device is re-created.
+/// every later call fails in the same way until the device is re-created.
 class DeviceLost : public Error {
 public:
     using Error::Error;
@@ -31,13 +31,13 @@ public:
     using Error::Error;
 };
 
-/// Throws if `result` is a failure: `DeviceLost` if the device was lost, `MemoryError` if memory ran out, otherwise
+/// Throws if `result` is a failure: `DeviceLost` after a device loss, `MemoryError` if memory ran out, otherwise
 /// `Error`. The message names the call and the result.
 void check(VkResult result, const char* call);
 #define SHVR_VK(call) ::shvr::gpu::check(call, #call)
 
 struct DeviceOptions {
-    std::string device;        ///< part of the device's name, or its index; empty: $SHVR_DEVICE, or the best device
+    std::string device;        ///< part of the device's name, or its index; if empty: $SHVR_DEVICE, or the best device
     bool validation = false;   ///< Khronos layer with synchronisation validation; fails if it is not installed
     bool looks_ahead = false;  ///< on a GPU, compiles in advance the kernels that graphs expect (FrameGraph::expect)
     /// Makes out-of-bounds reads return 0 or data of the same buffer, and discards out-of-bounds writes. Robust access
@@ -55,7 +55,7 @@ struct DeviceTraits {
     std::string driver;   ///< name and version
     bool is_cpu = false;  ///< lavapipe and other software devices
     /// Number of threads of a software device. Each thread runs an equal, contiguous share of a dispatch's workgroups
-    /// (lavapipe's threads do, in index order), and the dispatch ends with the slowest thread.
+    /// (lavapipe: in index order), so a dispatch takes as long as its slowest thread.
     uint32_t cpu_threads = 1;
     bool is_integrated = false;      ///< whether the device shares the host's memory
     float nanoseconds_per_tick = 0;  ///< 0: no timestamps
@@ -63,18 +63,18 @@ struct DeviceTraits {
     bool has_pipeline_statistics = false;
     bool linear_r16 = false;   ///< R16_UNORM can be filtered by the sampler
     bool storage_r16 = false;  ///< R16_UNORM can be read with imageLoad
-    /// Size of the largest device-local heap, as reported; for integrated devices, of the largest heap of any kind.
+    /// Size of the largest device-local heap; on integrated devices, size of the largest heap of any kind.
     uint64_t device_bytes = 0;
     VkPhysicalDeviceLimits limits{};
-    uint64_t max_allocation_bytes = 0;  ///< limit of one buffer or image, as each needs a single allocation
+    uint64_t max_allocation_bytes = 0;  ///< limit of one buffer or image, since each needs one contiguous allocation
     uint64_t max_buffer_bytes = 0;
-    uint64_t max_volume_bytes = 0;     ///< limit of a 3-D image of codes; at most the limit of an allocation
+    uint64_t max_volume_bytes = 0;     ///< limit of a 3-D image of codes; never above max_allocation_bytes
     bool tells_memory_left = false;    ///< VK_EXT_memory_budget
     bool tells_faults = false;         ///< VK_EXT_device_fault
     bool has_memory_priority = false;  ///< VK_EXT_memory_priority
 };
 
-/// Returns the items of a Vulkan query that must be called twice: first for their count, then for the items.
+/// Returns the items of a Vulkan query that is called twice: first for the number of items, then for the items.
 template <class T, class Call>
 std::vector<T> enumerate(Call call)
 {
@@ -101,8 +101,8 @@ public:
     const DeviceTraits& traits() const { return traits_; }
     bool looks_ahead() const { return looks_ahead_; }
     const VkPhysicalDeviceMemoryProperties& memory_properties() const { return memory_properties_; }
-    /// Free bytes of the heap counted in `device_bytes`: the bytes that the driver still grants this program while
-    /// other programs use theirs. Null if the driver does not report it.
+    /// Free bytes of the heap counted in `device_bytes`: the bytes that the driver still grants this program, given the
+    /// usage of other programs. Null if the driver does not report this.
     std::optional<uint64_t> heap_bytes_left() const;
 
     /// Names an object for validation messages, captures and traces.
@@ -110,22 +110,22 @@ public:
     void begin_label(VkCommandBuffer commands, const std::string& name) const;
     void end_label(VkCommandBuffer commands) const;
 
-    /// Like gpu::check, for calls that can report a lost device: adds the driver's fault report to the message.
+    /// Like gpu::check, for calls that can report a lost device: the message includes the driver's fault report.
     void check(VkResult result, const char* call) const;
 
-    /// Waits for all submitted work. The second function is for places that cannot report a failure.
+    /// Waits for all submitted work. wait_idle_or_lost() is for callers that cannot report a failure.
     void wait_idle();
     void wait_idle_or_lost() noexcept;
 
     // The queue completes submissions in submission order across all submitters. Each submitter takes a number right
-    // after submitting, and reports that number when the fence is signalled, so that all users of the device know its
+    // after submitting, and reports the number when the fence is signalled. All users of the device thus know its
     // progress.
     uint64_t note_submission() { return ++submitted_; }
     void note_done(uint64_t number) { done_ = std::max(done_, number); }
     uint64_t submitted() const { return submitted_; }
     uint64_t done() const { return done_; }
 
-    /// Returns the validation layer's messages so far (warnings and errors), oldest first, and empties the list.
+    /// Returns the validation layer's collected messages (warnings and errors), oldest first, and clears the list.
     std::vector<std::string> take_validation_messages();
     /// Whether the validation layer is active.
     bool is_validated() const { return messenger_ != VK_NULL_HANDLE; }

@@ -1,5 +1,5 @@
 #pragma once
-// Device capabilities that the kernels require, but that some devices lack because Vulkan 1.3 does not guarantee them.
+// Device capabilities that the kernels require although Vulkan 1.3 does not guarantee them, so some devices lack them.
 // A test compares them with the kernels (tests/unit/device/device_needs_test.cpp). Any thread.
 
 #include <cstdint>
@@ -11,10 +11,10 @@
 
 namespace shvr::gpu {
 
-/// The maximum number of resources that any one kernel binds, and the maximum sizes that any one kernel uses.
+/// For each resource type, the maximum number that a kernel binds. For each size, the maximum of all kernels.
 inline constexpr uint32_t MAX_STORAGE_IMAGES = 13, MAX_STORAGE_BUFFERS = 6, MAX_SAMPLED_IMAGES = 4;
 inline constexpr uint32_t MAX_PUSH_BYTES = 128, MAX_GROUP_THREADS = 128, MAX_SHARED_BYTES = 10592;
-/// Size of the largest buffer whose size does not depend on the volume: the parents of 256^3 voxels (regions/).
+/// Size of the largest buffer that does not grow with the volume: union-find parents of 256^3 voxels (regions/).
 inline constexpr uint32_t MIN_BUFFER_BYTES = 64u << 20;
 
 /// Capabilities that a device reports.
@@ -31,8 +31,8 @@ struct Need {
 };
 std::vector<Need> needs_of(const DeviceHas& has);
 
-/// Returns why such a device cannot run the kernels: a message with the value found and the value expected; null if it
-/// can.
+/// Returns why such a device cannot run the kernels, with the value found and the value expected; null if the device
+/// can run them.
 std::optional<std::string> why_too_limited(const DeviceHas& has);
 
 /// The message for a system without any Vulkan driver.
@@ -45,14 +45,14 @@ struct DeviceRow {
     VkPhysicalDeviceType type = VK_PHYSICAL_DEVICE_TYPE_OTHER;
     bool has_1_3 = true;
     bool computes = true;
-    bool presents = true;  ///< whether it can present to the window, if there is one
-    std::string lacks{};   ///< why it cannot run the kernels; empty if it can, or if this is unknown
+    bool presents = true;  ///< whether the device can present to the window, if there is one
+    std::string lacks{};   ///< why the device cannot run the kernels; empty if it can, or if unknown
 };
-/// Returns why a device cannot be used, apart from presentation to a window; empty if it can.
+/// Returns why a device cannot be used (presentation aside); empty if it can be used.
 std::string why_unfit(const DeviceRow& row);
 /// Returns the index of the device to use: among those that meet all requirements, hardware before software, discrete
 /// before integrated. `wanted`: part of a name, in upper or lower case, or an index; empty: any device. `wanted_by`:
-/// the option or variable that states it. The failure lists the devices found, and why each cannot be used.
+/// the option or variable that sets `wanted`. The error lists the devices and why each is unfit.
 size_t best_device(const std::vector<DeviceRow>& rows, const std::string& wanted,
                    const std::string& wanted_by = "--device");
 

@@ -12,7 +12,7 @@ namespace shvr::gpu {
 
 namespace {
 
-/// A queue family that supports compute, with its further capabilities.
+/// A queue family that supports compute, and its other capabilities.
 struct Family {
     uint32_t index = 0;
     bool presents = false;
@@ -59,7 +59,7 @@ std::string why_it_cannot(VkPhysicalDevice physical)
     VkPhysicalDeviceVulkan12Features has12{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
     VkPhysicalDeviceFeatures2 has{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &has12};
     vkGetPhysicalDeviceFeatures2(physical, &has);
-    // The shared headers need scalar layout. It is optional in 1.3, but all desktop drivers and lavapipe support it.
+    // The shared headers need scalar layout: optional in 1.3, but supported by all desktop drivers and lavapipe.
     if (!has12.scalarBlockLayout)
         return "the Vulkan feature scalarBlockLayout is missing; expected a driver that has it";
     const bool stores_r16 = features_of(physical, VK_FORMAT_R16_UNORM) & VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT;

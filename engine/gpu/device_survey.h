@@ -1,5 +1,5 @@
 #pragma once
-// The machine's Vulkan devices and whether they can run the kernels: for choosing one, and for reports. Any thread.
+// The machine's Vulkan devices, and whether each can run the kernels. Used to choose one and for reports. Any thread.
 
 #include <cstdint>
 #include <functional>
@@ -19,7 +19,7 @@ inline constexpr const char* VALIDATION_LAYER = "VK_LAYER_KHRONOS_validation";
 struct FoundDevice {
     VkPhysicalDevice physical = VK_NULL_HANDLE;
     DeviceRow row;
-    std::optional<uint32_t> family;  ///< queue family that computes and, if possible, presents and draws; null: none
+    std::optional<uint32_t> family;  ///< queue family for compute and, if possible, presentation and drawing, or null
 };
 /// `can_present`: whether a queue family can present to the window; null: presentation is not required.
 std::vector<FoundDevice> find_devices(VkInstance instance,
@@ -31,20 +31,20 @@ bool has_extension(VkPhysicalDevice physical, const char* name);
 struct DeviceReport {
     DeviceRow row;
     std::string kind, driver;
-    std::string vulkan;       ///< the version of Vulkan that it supports, "1.3.230"
-    std::string why_unfit;    ///< why it cannot be used; empty if it can
-    uint64_t bytes = 0;       ///< size of its largest heap of device-local memory
+    std::string vulkan;       ///< the Vulkan version that the device supports, such as "1.3.230"
+    std::string why_unfit;    ///< why the device cannot be used; empty if it can
+    uint64_t bytes = 0;       ///< size of the device's largest heap of device-local memory
     uint32_t threads = 0;     ///< number of threads of a software device; 0 for hardware
-    std::vector<Need> needs;  ///< limits that the kernels depend on; empty below Vulkan 1.3
+    std::vector<Need> needs;  ///< limits that the kernels depend on; empty if Vulkan is below 1.3
     struct Option {
         std::string name, gives;
         bool is_present = false;
     };
-    std::vector<Option> options;  ///< optional features, and the use that SHVR makes of them
+    std::vector<Option> options;  ///< optional features, and how SHVR uses them
 };
-/// Lists all devices without creating one. Fails if there is no driver, or if the loader cannot list devices.
+/// Lists all devices without creating any. Fails if there is no driver, or if the loader cannot list devices.
 std::vector<DeviceReport> survey_devices();
-/// Returns the index of the device that is used without --device. Fails with the reason if there is none.
+/// Returns the index of the device used by default (without --device). Fails with the reason if there is none.
 size_t default_device(const std::vector<DeviceReport>& devices);
 /// Whether the Khronos validation layer is installed.
 bool validation_is_installed();

@@ -10,8 +10,8 @@ namespace shvr::gpu {
 
 namespace {
 
-/// Rounds up to one of two sizes per power of two. The boxes that a brush uploads vary by a voxel per side; rounding
-/// lets an upload reuse the previous one's buffer.
+/// Rounds up to one of two sizes per power of two. A brush's upload boxes vary by one voxel per side; with rounding, an
+/// upload can reuse the buffer of the previous one.
 uint64_t rounded(uint64_t bytes)
 {
     constexpr uint64_t LEAST = 1024;
@@ -47,13 +47,13 @@ Storage& Executor::take_transient(const std::string& name, const ResourceDesc& w
 {
     ResourceDesc desc = wanted;
     if (placement != Placement::device) desc.bytes = rounded(desc.bytes);
-    // Takes the least recently used suitable buffer: so all buffers needed at peak load stay in use, instead of being
+    // Takes the least recently used suitable buffer. All buffers needed at peak load thus stay in use, instead of being
     // freed and created again.
     Transient* found = nullptr;
     for (const auto& transient : transients_) {
         if (transient->taken || transient->placement != placement || !(transient->desc == desc)) continue;
-        // Counters of kernels never reuse a buffer written by a copy: validation (1.3.239) does not always notice that
-        // the host waited for the frame of that copy, and would report a read-after-write hazard.
+        // Counters of kernels never reuse a buffer written by a copy. The validation layer (1.3.239) sometimes misses
+        // that the host waited for the copy's frame, and would then report a read-after-write hazard.
         if (transient->is_counted_in != is_counted_in) continue;
         if (!found || transient->last_run < found->last_run) found = transient.get();
     }
@@ -71,7 +71,7 @@ void Executor::trim(uint64_t runs)
 {
     std::erase_if(transients_, [&](const auto& t) {
         if (t->taken || t->last_run + runs > runs_) return false;
-        t->storage.reset_idle();  // no longer in use, because the frame that last used it is done
+        t->storage.reset_idle();  // not in use on the device: the frame that last used it is done
         return true;
     });
 }

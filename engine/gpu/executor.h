@@ -8,7 +8,7 @@
 // Frames run on the device in submission order, and each frame knows which accesses earlier frames left in flight. A
 // frame is one queue submission unless the past costs of its passes predict a long run (pass_costs.h). Then it is split
 // into several submissions, between the tiles of passes and the parts of copies. Callers that must let other work run
-// in between make several small frames and keep few of them in flight. One thread at a time.
+// in between submit several small frames and keep few of them in flight. Used by one thread at a time.
 
 #include <chrono>
 #include <memory>
@@ -22,7 +22,7 @@
 
 namespace shvr::gpu {
 
-/// Number of work counters per pass, which kernels increment (shaders/counters.h names them).
+/// Number of work counters per pass (shaders/counters.h names the counters). Kernels increment them.
 inline constexpr size_t COUNTERS = 16;
 /// Number of counter rows (a power of two) of a pass that counts the work of every thread. Kernels spread their groups
 /// over the rows to reduce contention; the report holds the sums of all rows.
@@ -32,19 +32,19 @@ struct PassReport {
     std::string name;
     std::string kernel;     ///< empty for copies and fills
     double start_ms = 0.0;  ///< from the start of the frame's first pass to the start of this pass
-    double gpu_ms = 0.0;    ///< 0 if the device has no timestamps, see `timed`
+    double gpu_ms = 0.0;    ///< device time; 0 if the device has no timestamps (see `timed`)
     bool timed = false;
     std::chrono::steady_clock::time_point recorded{};  ///< when the host began to record the pass
     double record_ms = 0.0;                            ///< host time to bind and record the pass
     uint32_t dispatches = 0;
-    uint32_t tiles = 0;              ///< number of dispatches that the pass's declaration asks for; slow
-                                     ///< devices split it into more
+    uint32_t tiles = 0;              ///< number of dispatches that the pass declares; slow devices split the pass into
+                                     ///< more
     uint32_t submissions = 0;        ///< number of submissions that contain parts of the pass
     uint64_t bytes = 0;              ///< total size of the bound resources: an upper bound of the bytes
                                      ///< that the pass accesses
-    std::string barrier;             ///< "compute -> transfer"; empty if there is none
+    std::string barrier;             ///< such as "compute -> transfer"; empty if there is no barrier
     std::vector<uint64_t> counters;  ///< empty if the kernel has no counters
-    uint32_t counted_rows = 0;       ///< number of counter rows in which anything was counted
+    uint32_t counted_rows = 0;       ///< number of counter rows that have non-zero counts
     /// Number of threads that ran, as counted by the device. Null if not requested or not supported, or if the pass is
     /// split into too many submissions.
     std::optional<uint64_t> invocations;
@@ -53,13 +53,13 @@ struct PassReport {
 struct FrameResult {
     std::vector<std::vector<std::byte>> read_backs;  ///< by index, as returned by FrameGraph::read_back
     std::vector<PassReport> passes;                  ///< in order of execution
-    double gpu_ms = 0.0;                             ///< from the first pass's start to the last pass's end; 0: untimed
-    double wall_ms = 0.0;                            ///< from first submission to completion, on the host's clock
+    double gpu_ms = 0.0;                             ///< first pass's start to last pass's end; 0: not measured
+    double wall_ms = 0.0;                            ///< first submission to completion, on the host's clock
 };
 
 class Executor;
 
-/// A frame in flight. Move-only; the destructor waits for the device. Must not outlive the executor.
+/// A frame in flight. Move-only. The destructor waits for the frame. Must not outlive the executor.
 class Submission {
 public:
     Submission();
@@ -71,7 +71,7 @@ public:
     /// Returns whether the device has finished the frame; never waits.
     bool done() const;
     void wait() const;
-    /// Waits if necessary. Afterwards this object is empty.
+    /// Waits for the frame if necessary, and leaves this object empty.
     FrameResult finish();
     const FrameGraph& graph() const;
 
@@ -87,7 +87,7 @@ public:
     struct Options {
         bool timestamps = true;
         bool statistics = false;  ///< whether invocations are counted
-        bool serialize = false;   ///< puts a full barrier between passes, so that each time covers a single pass
+        bool serialize = false;   ///< adds a full barrier between passes, so each measured time covers one pass
     };
 
     Executor(Device& device, Memory& memory);
@@ -95,8 +95,8 @@ public:
     Executor(const Executor&) = delete;
     Executor& operator=(const Executor&) = delete;
 
-    /// Compiles, records and submits the graph. From then on, imported objects are in the states in which the frame
-    /// will leave them. On failure the frame is discarded, and the graph's rollbacks still run when it is destroyed
+    /// Compiles, records and submits the graph. Imported objects then have the states in which the frame will leave
+    /// them. On failure the frame is discarded, and the graph's rollbacks run when the graph is destroyed
     /// (FrameGraph::unless_submitted).
     Submission submit(FrameGraph graph, const Options& options);
     Submission submit(FrameGraph graph) { return submit(std::move(graph), Options{}); }
@@ -104,7 +104,7 @@ public:
     FrameResult run(FrameGraph graph, const Options& options) { return submit(std::move(graph), options).finish(); }
     FrameResult run(FrameGraph graph) { return run(std::move(graph), Options{}); }
 
-    /// Number of kernels that graphs expect (FrameGraph::expect) and that are not compiled yet.
+    /// Number of kernels that graphs expect (FrameGraph::expect) but that are not compiled yet.
     size_t expected_kernels() const { return kernels_.expected(); }
 
     /// Frees transient resources that the last `runs` frames did not use.
@@ -120,7 +120,7 @@ private:
         bool is_counted_in = false;  ///< kernels add to counters in this resource
         Storage storage;
     };
-    /// Takes a transient resource. Host-visible storage may be larger than `wanted`.
+    /// Returns a free or new transient resource. Host-visible storage may be larger than `wanted`.
     Storage& take_transient(const std::string& name, const ResourceDesc& wanted, Placement placement,
                             bool is_counted_in = false);
 

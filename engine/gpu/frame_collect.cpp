@@ -1,4 +1,4 @@
-// Submission and completion of a graph (frame_in_flight.h), and its results.
+// Submits a graph, detects its completion, and collects its results (frame_in_flight.h).
 
 #include <algorithm>
 #include <array>
@@ -47,12 +47,12 @@ void Submission::Frame::submit()
             for (Memory::Object* image : transitioned) image->in_general_layout = true;
     }
     number = device.note_submission();
-    // Barriers are global, so they also change the states of imports that no kept pass uses.
+    // Barriers are global, so they also affect the states of imports that no remaining pass uses.
     for (uint32_t i = 0; i < compiled.final_states.size(); ++i)
         if (compiled.used[i] || graph.resources()[i].imported) object(i).state = compiled.final_states[i];
 }
 
-/// Marks states as unknown: a part of the frame ran, but it is unknown which part.
+/// Marks the states as unknown, because an unknown part of the frame has run.
 void Submission::Frame::note_unknown_states() const
 {
     for (uint32_t i = 0; i < compiled.used.size(); ++i)
@@ -62,7 +62,7 @@ void Submission::Frame::note_unknown_states() const
 bool Submission::Frame::done() const
 {
     if (number == 0 || number <= executor.device_.done()) return true;
-    // Returns the fence's status, like vkGetFenceStatus, but also shows the validation layer that the host waited.
+    // Returns the fence's status like vkGetFenceStatus, but lets the validation layer see that the host waited.
     const VkFence fence = objects->fence();
     const VkResult result = vkWaitForFences(executor.device_.handle(), 1, &fence, VK_TRUE, 0);
     executor.device_.check(result, "vkWaitForFences");
@@ -138,8 +138,8 @@ FrameResult Submission::Frame::collect()
         }
         for (size_t query = 0; query < counted_steps.size() && !prepared[i].is_counted_in_part; ++query)
             if (counted_steps[query] == i) report.invocations = report.invocations.value_or(0) + invocations[query];
-        // On a device without timestamps, a pass takes at most the host time of all passes up to it. With timestamps,
-        // an untimed frame gives no estimate: its host time may include long waits in the queue and afterwards.
+        // On a device without timestamps, the host time of all passes up to a pass bounds the time of that pass. With
+        // timestamps, an untimed frame gives no estimate, since its host time may include long waits in the queue.
         if (prepared[i].kernel && (is_timed || traits.timestamp_bits == 0))
             executor.costs_.learn(data.kernel, threads_of(data, *prepared[i].kernel),
                                   is_timed ? report.gpu_ms : result.wall_ms);

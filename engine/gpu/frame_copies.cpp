@@ -9,7 +9,7 @@ namespace shvr::gpu {
 
 namespace {
 
-/// Estimates a part's time: the time of the largest part, scaled by the share of the limits that this part uses.
+/// Estimates a part's time: the largest part's time, scaled by how much of a part's limits this part uses.
 double copy_ms(const std::vector<BufferRegion>& part)
 {
     uint64_t bytes = 0;
@@ -47,13 +47,13 @@ void Submission::Frame::record_fill(const PassData& data, Prepared& state)
     record_parts(
         state, data.name, copy_parts({{0, 0, buffer.desc.bytes}}), [&](VkCommandBuffer commands, const auto& part) {
             const BufferRegion& r = part[0];
-            const bool is_last = r.target_offset + r.bytes == buffer.desc.bytes;  // the size may not be a multiple of 4
+            const bool is_last = r.target_offset + r.bytes == buffer.desc.bytes;  // its size may not be a multiple of 4
             vkCmdFillBuffer(commands, buffer.buffer, r.target_offset, is_last ? VK_WHOLE_SIZE : r.bytes,
                             data.fill_value);
         });
 }
 
-/// Clears an image with one command: recording tens of thousands of bricks as separate regions can take seconds.
+/// Clears an image with one command; separate regions for tens of thousands of bricks can take seconds to record.
 void Submission::Frame::record_clear(const PassData& data, const Memory::Object& image, Prepared& state)
 {
     const uint32_t value = data.fill_value;

@@ -1,5 +1,5 @@
 #pragma once
-// A graph in flight, from its declaration to its results, for executor.cpp alone: the memory and driver objects that it
+// A graph in flight, from declaration to results, for executor.cpp only. Holds the memory and driver objects that it
 // needs (frame_prepare.cpp), its commands (frame_record.cpp, frame_copies.cpp) and its results (frame_collect.cpp).
 
 #include <chrono>
@@ -32,7 +32,7 @@ uint64_t threads_of(const glm::uvec3& groups, const glm::uvec3& local);
 /// Number of threads of a pass, including idle threads of partly filled groups.
 uint64_t threads_of(const PassData& pass, const Kernel& kernel);
 
-/// One graph in flight: everything that must live until the device has finished the graph.
+/// One graph in flight, with everything that must live until the device has finished it.
 struct Submission::Frame {
     Executor& executor;
     const FrameGraph graph;
@@ -43,17 +43,17 @@ struct Submission::Frame {
     std::vector<Storage*> read_backs;
     Storage* blocks = nullptr;
     Storage* counters = nullptr;
-    Storage* work_counters = nullptr;  // counters in device memory, for kernels that count much; copied to `counters`
+    Storage* work_counters = nullptr;  // counters in device memory, for kernels that count often; copied to `counters`
                                        // at the end
     uint64_t counter_bytes = 0;        // bytes per pass
     std::unique_ptr<FrameObjects> objects;
     bool is_timed = false;
-    std::vector<size_t> counted_steps;  // for each statistics query, the index of its step
+    std::vector<size_t> counted_steps;  // index of the counted step, for each statistics query
     uint32_t statistics_room = 0;       // capacity in queries; 0: no query pool is created
     bool is_in_query = false;
     uint64_t number = 0;                  // number of the frame's last submission; 0: none
     std::vector<VkCommandBuffer> chunks;  // one command buffer for each submission
-    double chunk_ms = 0.0;                // estimated time of the last chunk as recorded so far
+    double chunk_ms = 0.0;                // estimated time of the commands recorded so far in the last chunk
     VkPipeline in_use = VK_NULL_HANDLE;   // the pipeline bound in the last chunk
     std::chrono::steady_clock::time_point started;
     struct Prepared {
@@ -68,7 +68,7 @@ struct Submission::Frame {
         std::chrono::steady_clock::duration recording{0};  // binding included
     };
     std::vector<Prepared> prepared;             // one for each step
-    std::vector<Memory::Object*> transitioned;  // images that the first chunk transitions from the undefined layout
+    std::vector<Memory::Object*> transitioned;  // images whose undefined layout the first chunk transitions to GENERAL
 
     Frame(Executor& owner, FrameGraph frame_graph, const Executor::Options& frame_options)
         : executor(owner), graph(std::move(frame_graph)), options(frame_options), compiled(graph.compile())

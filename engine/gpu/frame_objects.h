@@ -1,7 +1,7 @@
 #pragma once
 // The driver objects of a frame in flight, apart from memory: a fence, command buffers, queries and descriptors. They
-// are created once and reused by later frames, because drivers need more time to create them than to use them. One
-// thread at a time.
+// are created once and reused by later frames, because drivers need more time to create them than to use them. Used by
+// one thread at a time.
 
 #include <map>
 #include <vector>
@@ -23,8 +23,8 @@ public:
     FrameObjects(const FrameObjects&) = delete;
     FrameObjects& operator=(const FrameObjects&) = delete;
 
-    /// Prepares the objects for another frame; the device must have finished the previous one. Throws when out of
-    /// memory; it may be called again after that.
+    /// Prepares the objects for another frame. The device must have finished the previous frame. Throws if memory runs
+    /// out; may then be called again.
     void renew(const Needs& needs);
     /// Begins another command buffer of this frame.
     VkCommandBuffer begin_commands();

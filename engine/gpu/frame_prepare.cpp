@@ -10,7 +10,7 @@ namespace shvr::gpu {
 
 namespace {
 
-/// Returns an upload's placement. Only small uploads use host-writable device memory, of which only 256 MiB may exist.
+/// Returns an upload's placement. Only small uploads go to host-writable device memory, often limited to 256 MiB.
 Placement placement_of(uint64_t bytes)
 {
     constexpr uint64_t MOST = uint64_t{4} << 20;
@@ -19,8 +19,8 @@ Placement placement_of(uint64_t bytes)
 
 }  // namespace
 
-/// Whether any kernel counts the work of every thread, not just rare events. If so, the counters are in device memory,
-/// where atomic additions are faster; otherwise in host memory, where no pass has to clear or copy them.
+/// Whether any kernel counts the work of every thread instead of rare events only. If so, the counters are in device
+/// memory, where atomic additions are faster. Otherwise they are in host memory and need no clear or copy.
 bool Submission::Frame::counts_work() const
 {
     return std::ranges::any_of(compiled.steps, [this](const Step& step) {
@@ -38,7 +38,7 @@ Storage& Submission::Frame::take_resource(const FrameGraph::ResourceData& resour
     return storage;
 }
 
-/// `are_copied`: kernels count in device memory, and the counters are copied to the host; otherwise in host memory.
+/// `are_copied`: counters are in device memory and are copied to the host; otherwise they are in host memory.
 void Submission::Frame::take_counters(uint64_t bytes, bool are_copied)
 {
     counters = &take("counters", buffer_desc(bytes), Placement::download, !are_copied);

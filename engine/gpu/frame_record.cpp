@@ -1,4 +1,4 @@
-// Records the commands of a graph (frame_in_flight.h): barriers and dispatches. Decides where each submission ends.
+// Records a graph's commands (frame_in_flight.h): barriers and dispatches. Decides where each submission ends.
 
 #include <algorithm>
 #include <cmath>
@@ -91,7 +91,7 @@ void Submission::Frame::end_chunk()
     SHVR_VK(vkEndCommandBuffer(chunks.back()));
 }
 
-/// Begins a statistics query. A query must stay within one command buffer, so a pass has one query per submission.
+/// Begins a statistics query. A query cannot span command buffers, so a pass has one query per submission.
 void Submission::Frame::begin_statistics(Prepared& state)
 {
     if (statistics_room == 0 || is_in_query) return;
@@ -120,7 +120,7 @@ void Submission::Frame::make_room(double ms, Prepared& state)
     chunk_ms += ms;
 }
 
-/// Moves new images, which have an undefined layout, to GENERAL, where they stay from the first submitted frame on.
+/// Moves new images from the undefined layout to GENERAL, in which they stay from the first submitted frame on.
 void Submission::Frame::transition_new_images()
 {
     std::vector<VkImageMemoryBarrier2> barriers;
@@ -166,8 +166,8 @@ void Submission::Frame::record()
             record_barrier(chunks.back(), {STAGE_COMPUTE | STAGE_TRANSFER, STAGE_COMPUTE | STAGE_TRANSFER, true});
         else if (step.barrier)
             record_barrier(chunks.back(), *step.barrier);
-        // This timestamp is written once all earlier submissions have completed; otherwise their remaining time would
-        // count as this pass's.
+        // The device writes this timestamp once all earlier submissions are complete; otherwise the rest of their time
+        // would count as part of this pass.
         if (is_timed)
             vkCmdWriteTimestamp2(chunks.back(), VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries, uint32_t(2 * i));
         record_pass(step, prepared[i]);
@@ -226,7 +226,7 @@ void Submission::Frame::record_dispatches(const PassData& data, Prepared& state)
                 const VkCommandBuffer commands = chunks.back();
                 executor.device_.begin_label(commands, data.name);
                 bind(data, state);
-                // The validation layer tracks an image as a whole, and reports hazards although each dispatch writes
+                // The validation layer tracks each image as a whole, so it reports hazards although dispatches write
                 // separate texels. It ignores dispatches with a base, so only the first tile is validated.
                 if (at == glm::uvec3(0))
                     vkCmdDispatch(commands, count.x, count.y, count.z);

@@ -179,7 +179,7 @@ void Kernel::create_pipeline(PipelineCache& cache, std::span<const uint32_t> spi
 
 Kernels::Kernels(Device& device) : device_(device), cache_(device)
 {
-    // No worker for CPU devices: drawing needs the cores, and the driver compiles each kernel when it first runs.
+    // On CPU devices there is no worker: drawing needs the cores, and the driver compiles each kernel on first use.
     if (device.traits().is_cpu || (cache_.likely().empty() && !device.looks_ahead())) return;
     expected_.assign(cache_.likely().begin(), cache_.likely().end());
     worker_ = std::thread([this] { work(); });
@@ -199,7 +199,7 @@ Kernels::~Kernels()
     cache_.save(used);
 }
 
-/// Compiles expected kernels. A failure is not reported here, but when the kernel is requested and compiled again.
+/// Compiles expected kernels. A failure is not reported here: get() compiles the kernel again and reports it.
 void Kernels::work() noexcept
 {
     for (;;) {

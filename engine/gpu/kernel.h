@@ -1,6 +1,6 @@
 #pragma once
 // Kernels: SPIR-V, reflected once, and one pipeline per set of specialization constants. Bindings are matched by the
-// names in the GLSL source. A missing, unknown or wrongly used name is refused, and the message lists the kernel's
+// names in the GLSL source. A missing, unknown or wrongly used name is an error whose message lists the kernel's
 // declarations.
 
 #include <array>
@@ -85,10 +85,10 @@ public:
     Kernels(const Kernels&) = delete;
     Kernels& operator=(const Kernels&) = delete;
 
-    /// Returns a kernel; waits if the worker is compiling it. On failure, lists the known kernels or constants.
+    /// Returns a kernel; waits if the worker is compiling it. The error message lists the known kernels or constants.
     const Kernel& get(const std::string& name, const std::vector<std::pair<std::string, uint32_t>>& constants);
     const KernelInterface& interface(const std::string& name);
-    /// Hints that these kernels are likely to be needed; the worker compiles them if the device option `looks_ahead` is
+    /// Hints that these kernels will probably be needed. The worker compiles them if the device option `looks_ahead` is
     /// set (gpu::DeviceOptions).
     void expect(std::span<const KernelVariant> variants);
     /// Number of kernels that the worker still has to compile.
@@ -113,13 +113,13 @@ private:
     mutable std::mutex mutex_;  ///< guards all of the following members
     std::map<std::string, Code> codes_;
     std::map<KernelVariant, Made> kernels_;
-    std::deque<KernelVariant> expected_;  ///< the first of these kernels is being compiled
+    std::deque<KernelVariant> expected_;  ///< kernels to compile; the first one is being compiled
     std::condition_variable is_made_, has_work_;
     bool ends_ = false;
     std::thread worker_;
 };
 
-/// Checks the bindings of a compute pass against its kernel's declarations. On failure, the message lists both.
+/// Checks a compute pass's bindings against its kernel's declarations. The error message lists both sets.
 void check_bindings(const PassData& pass, const KernelInterface& interface,
                     const std::vector<FrameGraph::ResourceData>& resources);
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr uint8_t CONTEXT = 0, VULKAN = 2;  // numbers of device kinds in TracyQueue.hpp
 
-/// Allocates a source location, a place in the source and a name, which Tracy copies.
+/// Allocates Tracy's source location for a name; Tracy copies the name.
 uint64_t place_of(std::string_view name)
 {
     constexpr std::string_view FILE = "engine", FUNCTION = "shvr";
@@ -29,7 +29,7 @@ int64_t host_nanoseconds()
         .count();
 }
 
-/// Converts a device's ticks to monotonic nanoseconds, even if only some bits of a tick are valid and they wrap around.
+/// Converts a device's ticks to monotonic nanoseconds. A tick may have fewer valid bits than 64, and wrap around.
 struct Timeline {
     bool has_begun = false;
     uint64_t device = 0, last_tick = 0;
@@ -38,7 +38,7 @@ struct Timeline {
     int64_t at(const DeviceClock& clock, uint64_t tick) const
     {
         const uint64_t ahead = (tick - last_tick) & clock.mask;
-        // An apparent advance by more than half the range is actually a small step back.
+        // A tick that seems to be more than half the range ahead is actually slightly behind.
         const bool is_behind = ahead > clock.mask / 2;
         const double ticks = is_behind ? -double((last_tick - tick) & clock.mask) : double(ahead);
         return last_ns + std::llround(ticks * clock.nanoseconds_per_tick);
@@ -47,7 +47,7 @@ struct Timeline {
 
 void tell_pass(const TracedPass& pass, int64_t begin, int64_t end)
 {
-    static uint16_t query = 0;  // wraps around, which Tracy allows since it only tracks queries in flight
+    static uint16_t query = 0;  // wraps around; Tracy allows reuse, since it only tracks queries in flight
     const uint16_t first = query++, second = query++;
     ___tracy_emit_gpu_zone_begin_alloc({place_of(pass.name), first, CONTEXT});
     ___tracy_emit_gpu_zone_end({second, CONTEXT});
@@ -87,7 +87,7 @@ void trace_passes(const DeviceClock& clock, std::span<const TracedPass> passes)
         timeline.has_begun = true;
         timeline.device = clock.device;
     }
-    // Passes that overlap on the device are reported one after the other, since spans in one row must not overlap.
+    // Reports passes that overlap on the device as consecutive, since spans in one row of Tracy must not overlap.
     int64_t last = timeline.at(clock, passes.front().begin);
     for (const TracedPass& pass : passes) {
         const int64_t begin = std::max(last, timeline.at(clock, pass.begin));

@@ -1,7 +1,7 @@
 #pragma once
 // Sends data to Tracy (https://github.com/wolfpld/tracy), a profiler that watches a program while it runs: host spans,
-// device passes, window frames. Only in builds with -DSHVR_TRACY=FOLDER, where FOLDER holds Tracy's sources; in all
-// other builds nothing is compiled: no call, no branch, no byte (tests/cli/instruments/test_live_trace.py).
+// device passes, window frames. Compiled only in builds with -DSHVR_TRACY=FOLDER, where FOLDER holds Tracy's sources.
+// Other builds contain no call, no branch and no byte of it (tests/cli/instruments/test_live_trace.py).
 
 #include <cstdint>
 #include <span>
@@ -15,7 +15,7 @@ inline constexpr bool IS_TRACED = true;
 inline constexpr bool IS_TRACED = false;
 #endif
 
-/// A host span, from its declaration to the end of the block. Any thread.
+/// A host span, from its construction to the end of the block. Any thread.
 class TraceSpan {
 public:
 #ifdef SHVR_TRACY
@@ -45,9 +45,9 @@ struct DeviceClock {
 };
 
 #ifdef SHVR_TRACY
-/// Sends the passes of a frame, in order of execution, once the device has finished it. The clocks of host and device
-/// are not calibrated: a device's first frame is shown as if it ended when the host noticed its end, and later frames
-/// follow by the device's ticks. One thread.
+/// Sends a finished frame's passes in order of execution. The clocks of host and device are not calibrated: a device's
+/// first frame is shown as if it ended when the host noticed its end, and later frames are placed by the device's
+/// ticks. Used by one thread only.
 void trace_passes(const DeviceClock& clock, std::span<const TracedPass> passes);
 /// Tells Tracy that the window shows its next frame.
 void trace_frame();

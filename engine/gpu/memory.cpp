@@ -25,7 +25,7 @@ std::string sides(uint32_t x, uint32_t y, uint32_t z)
     return sentence(x, " x ", y, " x ", z);
 }
 
-/// Whether a result means that memory ran out; drivers use several codes for that.
+/// Whether a result means that memory ran out; drivers report this by several codes.
 bool is_shortage(VkResult result)
 {
     switch (result) {
@@ -39,7 +39,7 @@ bool is_shortage(VkResult result)
 
 }  // namespace
 
-/// Every Vulkan implementation has a memory type that matches the last set of flags.
+/// The last set of flags matches a memory type on every Vulkan implementation.
 std::vector<uint32_t> memory_types(const VkPhysicalDeviceMemoryProperties& properties, uint32_t allowed,
                                    Placement placement)
 {
@@ -48,7 +48,7 @@ std::vector<uint32_t> memory_types(const VkPhysicalDeviceMemoryProperties& prope
     if (placement == Placement::upload) wish = must = mapped;
     if (placement == Placement::values) wish = mapped | VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, must = mapped;
     if (placement == Placement::download) wish = mapped | VK_MEMORY_PROPERTY_HOST_CACHED_BIT, must = mapped;
-    // Memory types with these properties are for special uses, and some of these types may not be usable at all.
+    // Memory types with these properties are for special purposes, and the program may be unable to use them.
     const VkMemoryPropertyFlags never = VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT | VK_MEMORY_PROPERTY_PROTECTED_BIT |
                                         VK_MEMORY_PROPERTY_DEVICE_COHERENT_BIT_AMD |
                                         VK_MEMORY_PROPERTY_DEVICE_UNCACHED_BIT_AMD;
@@ -304,7 +304,7 @@ void Memory::allocate(Object& object, const VkMemoryRequirements& needs, const c
     if (!on_device) object.mapped = map(object.memory);
 }
 
-/// Allocates from the driver. On an integrated device, where all heaps are the same memory, any type will do.
+/// Allocates from the driver. On an integrated device any memory type will do, as all heaps share one memory.
 VkResult Memory::allocate_from_driver(uint64_t bytes, uint32_t allowed, const Object& object, VkDeviceMemory* memory,
                                       uint32_t* type)
 {
@@ -334,7 +334,7 @@ VkResult Memory::allocate_from_driver(uint64_t bytes, uint32_t allowed, const Ob
     return result;
 }
 
-/// Puts a small object into a shared block. Returns false if the object needs its own allocation.
+/// Puts a small object into a shared block. Returns false if the object must have its own allocation.
 bool Memory::allocate_in_block(Object& object, const VkMemoryRequirements& needs)
 {
     if (needs.size > MemoryBlock::MAX_SHARE) return false;
@@ -391,7 +391,7 @@ void Memory::destroy(Object& object) noexcept
     if (!object.block) return free_to_driver(object.memory);
     object.block->give_back(object.offset);
     if (!object.block->is_empty()) return;
-    // Keeps one empty block of each kind, since the next small object would otherwise create such a block again.
+    // Keeps one empty block of each kind, since otherwise the next small object would have to allocate one again.
     const auto is_spare = [&](const auto& other) {
         return other.get() != object.block && other->is_empty() && other->placement == object.block->placement &&
                other->holds_images == object.block->holds_images;

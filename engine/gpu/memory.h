@@ -1,11 +1,11 @@
 #pragma once
 // Device memory with accounting: every buffer and image has a name, its bytes are counted by name, and two budgets
-// (device, host) are hard limits. Every allocation is first checked against its budget; if the budget or the driver
-// lacks memory, idle memory is freed. Small buffers share allocations (memory_block.h), whose number drivers limit;
-// small images share others. Memory that is released while the device may still use it is freed once the device is
-// done; callers wait for that only if they need the bytes at once.
+// (device, host) are hard limits. Every allocation is first checked against its budget. If the budget or the driver
+// lacks memory, idle memory is freed. Drivers limit the number of allocations, so small buffers share some
+// (memory_block.h), and small images others. Memory released while the device may still use it is freed once the device
+// is done; callers wait for the device only if they need the bytes at once.
 //
-// One thread at a time.
+// Used by one thread at a time.
 
 #include <deque>
 #include <functional>
@@ -28,22 +28,22 @@ struct Budget {
     uint64_t host_bytes = 0;    ///< 0: 1 GiB of mapped memory
 };
 
-/// Returns three quarters of the device's memory, or half of it if it is shared with the host; never more than `left`,
-/// the bytes that the driver reports as left by other programs.
+/// Returns three quarters of the device's memory, or half if the memory is shared with the host; at most `left`, the
+/// bytes that other programs leave free according to the driver.
 uint64_t automatic_device_bytes(const DeviceTraits& traits, std::optional<uint64_t> left);
 
-/// An allocation would exceed the budget. The message names the budget and a remedy.
+/// An allocation would exceed the budget. The message names the budget and a solution.
 class BudgetError : public MemoryError {
 public:
     using MemoryError::MemoryError;
 };
 
-/// Returns the memory types for a placement among those that a resource allows, best first.
+/// Returns the memory types, best first, that suit a placement and that a resource allows.
 std::vector<uint32_t> memory_types(const VkPhysicalDeviceMemoryProperties& properties, uint32_t allowed,
                                    Placement placement);
 
-/// Returns the priority, 0 to 1 (VK_EXT_memory_priority), of keeping such memory on the device when other programs
-/// leave too little. Data that rays read repeatedly has a higher priority than pictures, which are written once.
+/// Returns the priority, 0 to 1 (VK_EXT_memory_priority), for keeping a resource in device memory when other programs
+/// leave too little. Data that rays read repeatedly ranks above pictures, which are written once.
 float memory_priority(const ResourceDesc& desc, Placement placement);
 
 /// Returns a size as text, such as "1.5 MiB", rounded up to a tenth.
@@ -51,7 +51,7 @@ std::string mebibytes(uint64_t bytes);
 
 class Memory;
 
-/// A buffer or an image that owns its memory. Move-only. It may be destroyed while the device still uses it, and the
+/// A buffer or an image that owns its memory. Move-only. May be destroyed while the device still uses it; the
 /// destructor never waits.
 class Storage {
 public:
@@ -62,12 +62,12 @@ public:
 
     explicit operator bool() const { return memory_ != nullptr; }
     const ResourceDesc& desc() const;
-    /// Returns the import for a frame graph, with the state in which the last submitted frame leaves the object.
+    /// Returns the import for a frame graph, including the state in which the last submitted frame leaves the object.
     Import import() const;
     /// The mapped bytes of an upload or download buffer.
     std::span<std::byte> mapped() const;
     void reset();
-    /// Like reset(). Callers must be sure that no submission in flight uses this storage.
+    /// Like reset(), for storage that no submission in flight uses; callers must ensure this.
     void reset_idle();
 
 private:
@@ -89,10 +89,10 @@ public:
                                        Placement placement = Placement::device) const;
     bool can_create(const ResourceDesc& desc) const { return !why_not("", desc); }
     /// Throws BudgetError if the budget is too small, MemoryError if the driver lacks memory, and Error if the device
-    /// can never hold the resource (`why_not`). `purpose`: the memory's use, as users would say it.
+    /// can never hold the resource (`why_not`). `purpose`: use of the memory, in the user's terms.
     Storage create(const std::string& name, const ResourceDesc& desc, Placement placement = Placement::device,
                    const char* purpose = "a step of the work");
-    /// Sets a function that frees allocated but idle memory. It is called before an allocation is refused.
+    /// Sets a function that frees allocated but unused memory. It is called before an allocation is refused.
     void free_idle_by(std::function<void()> free_idle) { free_idle_ = std::move(free_idle); }
     void free_idle();
 
@@ -106,18 +106,18 @@ public:
         VkImageView view = VK_NULL_HANDLE;
         VkDeviceMemory memory = VK_NULL_HANDLE;
         uint64_t offset = 0;           ///< offset in `memory`
-        MemoryBlock* block = nullptr;  ///< the block that `memory` belongs to; null: the object has its own memory
+        MemoryBlock* block = nullptr;  ///< the block that contains `memory`; null: the object has its own memory
         uint64_t bytes = 0;            ///< as counted against the budget
         std::byte* mapped = nullptr;
         bool in_general_layout = false;
-        ResourceState state;  ///< accesses left in flight by the last submitted frame
+        ResourceState state;  ///< accesses that the last submitted frame leaves in flight
     };
     Object& object(uint32_t id);
 
     /// Frees released memory that is no longer in use.
     void collect() noexcept;
 
-    // Released memory counts as free. An allocation that needs it waits until the device no longer uses it.
+    // Released memory counts as free. An allocation that needs released memory waits until the device is done with it.
     uint64_t device_bytes() const { return device_bytes_ - retired_device_bytes_; }
     uint64_t host_bytes() const { return host_bytes_ - retired_host_bytes_; }
     uint64_t peak_device_bytes() const { return peak_device_bytes_; }
@@ -126,7 +126,7 @@ public:
     uint64_t device_bytes_left() const { return budget_.device_bytes - device_bytes(); }
     uint64_t host_bytes_left() const { return budget_.host_bytes - host_bytes(); }
     std::map<std::string, uint64_t> bytes_by_name() const;
-    /// Number of driver allocations that exist now, and number of all allocations so far.
+    /// Number of driver allocations that exist now, and total number of allocations made.
     uint64_t allocations() const { return allocations_; }
     uint64_t allocations_made() const { return allocations_made_; }
     Device& device() { return device_; }

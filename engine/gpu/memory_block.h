@@ -1,6 +1,6 @@
 #pragma once
-// An allocation shared by small buffers, or by small images: drivers limit the number of allocations, some to 4096, and
-// take long for each. Tracks the free ranges; knows nothing of Vulkan but the handle. One thread at a time.
+// An allocation shared by small buffers, or by small images, since drivers limit the number of allocations (some to
+// 4096) and take long for each. Tracks free ranges; uses nothing of Vulkan but the handle. One thread at a time.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,35 +12,35 @@
 namespace shvr::gpu {
 
 enum class Placement {
-    device,    ///< memory that is fastest for the device; counts against the device budget
+    device,    ///< memory with the fastest device access; counts against the device budget
     upload,    ///< mapped memory that the host writes; counts against the host budget
-    download,  ///< memory that is mapped and cached, for the host to read; counts against the host budget
-    values,    ///< like upload, but in device memory if the host can write there, for data that kernels read often
+    download,  ///< mapped and cached memory that the host reads; counts against the host budget
+    values,    ///< like upload, but in host-writable device memory if available, for data that kernels read often
 };
 
 class MemoryBlock {
 public:
     static constexpr uint64_t BYTES = uint64_t{1} << 20;
-    /// Maximum size of a resource in a shared block; larger resources get an allocation of their own.
+    /// Maximum size of a resource in a shared block; larger resources have their own allocation.
     static constexpr uint64_t MAX_SHARE = BYTES / 8;
 
     MemoryBlock(VkDeviceMemory of, Placement where, bool of_images, uint32_t memory_type, std::byte* begin)
         : memory(of), placement(where), holds_images(of_images), type(memory_type), mapped(begin)
     {}
-    /// Allocates `bytes` and returns their offset; null if there is no room. `alignment`: a power of two.
+    /// Allocates `bytes` and returns their offset; null if they do not fit. `alignment`: a power of two.
     std::optional<uint64_t> take(uint64_t bytes, uint64_t alignment);
     void give_back(uint64_t offset);
     bool is_empty() const { return used_.empty(); }
 
     const VkDeviceMemory memory;
     const Placement placement;
-    const bool holds_images;  ///< true: only images; next to buffers they would need a device-specific distance
+    const bool holds_images;  ///< true: holds images only; next to buffers, images need a device-specific distance
                               ///< (bufferImageGranularity)
     const uint32_t type;
     std::byte* const mapped;  ///< null: not mapped
 
 private:
-    std::map<uint64_t, uint64_t> used_;  ///< end of each range in use, by its begin
+    std::map<uint64_t, uint64_t> used_;  ///< end of each used range, keyed by its beginning
 };
 
 }  // namespace shvr::gpu

@@ -1,6 +1,6 @@
-// Sets handles to null when a call fails. Vulkan leaves them undefined, and Dear ImGui's back end then frees memory
-// twice: it destroys a vertex buffer, fails to create a larger one, and keeps the old handles. The linker redirects all
-// of this program's calls of these Vulkan functions to the functions below (--wrap in CMakeLists.txt).
+// Sets handles to null when a call fails. Vulkan leaves the handles undefined. Dear ImGui's back end then frees memory
+// twice: after destroying a vertex buffer and failing to create a larger one, it keeps the old handles. The linker
+// redirects this program's calls of these Vulkan functions to the functions below (--wrap in CMakeLists.txt).
 #include <vulkan/vulkan.h>
 
 extern "C" {

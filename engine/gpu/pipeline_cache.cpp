@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view MAGIC = "SHVR pipelines 1\n";
 
-/// Computes a checksum (FNV-1a), because drivers check only the header of the data, and trust the rest.
+/// Computes a checksum (FNV-1a), because drivers check only the data's header and trust the rest.
 uint64_t sum_of(std::span<const std::byte> bytes)
 {
     uint64_t sum = 0xcbf29ce484222325;
@@ -35,7 +35,7 @@ void append_part(std::vector<std::byte>& bytes, std::span<const std::byte> part)
     append(bytes, part);
 }
 
-/// Splits a part, preceded by its size, off the start of `bytes`; null if `bytes` end before the part does.
+/// Splits a part, preceded by its size, off the start of `bytes`; null if `bytes` are too short.
 std::optional<std::span<const std::byte>> take_part(std::span<const std::byte>& bytes)
 {
     uint64_t size = 0;
@@ -148,7 +148,7 @@ PipelineCache::~PipelineCache()
     vkDestroyPipelineCache(device_.handle(), handle_, nullptr);
 }
 
-/// Returns the driver's data; empty if nothing follows the header, as with drivers that store nothing.
+/// Returns the driver's data; empty if there is only a header, as with drivers that store nothing.
 std::vector<std::byte> PipelineCache::data_of_driver() const
 {
     size_t size = 0;
@@ -171,7 +171,7 @@ void PipelineCache::save(const std::set<KernelVariant>& used) noexcept
         kept.likely.resize(std::min(kept.likely.size(), MAX_LIKELY));
         std::filesystem::create_directories(file_.parent_path());
         write_file_atomically(file_, encode(kept, driver_));
-    } catch (const std::exception&) {  // disk full or folder not writable: the next run compiles kernels again
+    } catch (const std::exception&) {  // the disk is full or the folder not writable: the next run compiles again
     }
 }
 

@@ -3,8 +3,8 @@
 // in use, which the next run is likely to need again.
 //
 // There is one file per device, in $XDG_CACHE_HOME/shvr or ~/.cache/shvr, written atomically. A file that is damaged,
-// belongs to another driver or has grown beyond MAX_BYTES is ignored and replaced. Nothing here ever fails: without a
-// file, everything is compiled again.
+// belongs to another driver or has grown beyond MAX_BYTES is ignored and replaced. No function here fails: without a
+// usable file, all kernels are compiled again.
 
 #include <atomic>
 #include <cstddef>
@@ -29,7 +29,7 @@ struct KeptPipelines {
 };
 /// `driver`: a string that identifies the driver and device uniquely.
 std::vector<std::byte> encode(const KeptPipelines& kept, const std::string& driver);
-/// Returns null if the bytes are damaged, or were written for another driver.
+/// Returns null if the bytes are damaged or were written by another driver.
 std::optional<KeptPipelines> decode(std::span<const std::byte> bytes, const std::string& driver);
 
 class PipelineCache {
@@ -43,17 +43,17 @@ public:
     PipelineCache(const PipelineCache&) = delete;
     PipelineCache& operator=(const PipelineCache&) = delete;
 
-    /// The cache for creating pipelines, on any thread; null if the driver has no memory for a cache.
+    /// The cache for creating pipelines on any thread; null if the driver lacks the memory for a cache.
     VkPipelineCache handle() const { return handle_; }
     const std::vector<KernelVariant>& likely() const { return kept_.likely; }
 
-    /// Counts a new pipeline. `was_cached`: the driver found it in the cache. Any thread.
+    /// Counts a new pipeline. `was_cached`: the driver found the pipeline in the cache. Any thread.
     void note_made(bool was_cached) { (was_cached ? cached_ : compiled_)++; }
     uint64_t compiled() const { return compiled_; }
     uint64_t cached() const { return cached_; }
 
-    /// Writes the file if it would contain more than the file read before: if something was compiled, or if `used` has
-    /// kernels that were not listed as likely.
+    /// Writes the file if it would contain more than the file that was read: if a pipeline was compiled, or if `used`
+    /// has kernels that were not listed as likely.
     void save(const std::set<KernelVariant>& used) noexcept;
 
 private:

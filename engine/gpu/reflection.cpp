@@ -1,4 +1,4 @@
-// SPIR-V reflection through SPIRV-Cross's C interface: a kernel's declarations, with their names in the GLSL source.
+// SPIR-V reflection through SPIRV-Cross's C interface: reads a kernel's declarations and their GLSL names.
 
 #include <algorithm>
 
@@ -56,7 +56,7 @@ struct Reflector {
         return members;
     }
 
-    /// Returns a block's members. If a block only holds one struct or array of structs, returns that struct's members.
+    /// Returns a block's members; for a block that only holds a struct or an array of structs, the struct's members.
     std::vector<KernelInterface::Member> block_members(spvc_type_id id) const
     {
         spvc_type block = spvc_compiler_get_type_handle(compiler, id);
