@@ -10,9 +10,9 @@ namespace shvr {
 namespace {
 
 constexpr double VELOCITY_CUTOFF_HZ = 100.0;
-/// Longest tick for fades: a longer pause of the servo counts as this long.
+/// Upper bound of a tick's length in fades: a longer pause of the servo counts as this long.
 constexpr uint64_t MAX_TICK_NS = 10'000'000;
-/// The thesis damps per tick, not per second; with ticks of this length, its damping equals `damping`.
+/// The thesis damps by the motion per tick, not per second. With ticks of this length, both definitions agree.
 constexpr double THESIS_TICK_S = 0.001;
 
 bool is_place(const DeviceState& state)
@@ -50,7 +50,7 @@ void clear_fault(uint32_t reset, ForceMemory& memory)
     memory.reset = reset;
 }
 
-/// Gives no force from this tick on; the limit on the force's change per tick does not apply.
+/// Gives zero force from this tick on, without the limit on the force's change per tick.
 ForceStep stop(const ForceSettings& settings, uint32_t flags, uint64_t now_ns, ForceMemory& memory)
 {
     memory.flags = (memory.flags & FORCE_FAULT) | flags;
@@ -79,7 +79,7 @@ void accept_elsewhere(const DeviceState& state, ForceMemory& memory)
     disengage(memory);
 }
 
-/// Takes the next state. A constant velocity is computed exactly, so that damping does not depend on the rate.
+/// Accepts the next state. Motion at constant velocity gives that exact velocity at any tick rate, and so does damping.
 void accept_next(const DeviceState& state, ForceMemory& memory)
 {
     // If the device's clock stands still or goes back, the velocity is left unchanged.
@@ -104,7 +104,7 @@ void believe_or_not(const DeviceState& state, ForceMemory& memory)
     if (memory.glitches >= GLITCHES_TO_ACCEPT) accept_elsewhere(state, memory);
 }
 
-/// Returns `value` after `dt_ns` of a fade, towards 1 if it `rises` and else 0; a full fade takes `whole_ns`.
+/// Returns `value` after `dt_ns` of a linear fade: towards 1 if `rises`, else towards 0. A full fade takes `whole_ns`.
 double faded(double value, bool rises, uint64_t dt_ns, uint64_t whole_ns)
 {
     const double change = double(dt_ns) / double(whole_ns);
@@ -143,7 +143,7 @@ struct Moment {
     bool is_fresh = false;
 };
 
-/// Cross-fades from the previous pull to the present one after a change of mode, law, object or limits, without a step.
+/// Cross-fades from the previous pull to the present one after a change of mode, law, object or limits: no sudden step.
 glm::dvec3 cross_faded(const ForceSettings& settings, const ModePull& pull, uint32_t limits, const glm::dvec3& wanted,
                        uint64_t dt_ns, ForceMemory& memory)
 {
@@ -178,7 +178,7 @@ glm::dvec3 click_of(const ForceSettings& settings, const DeviceCaps& caps, const
     const bool begins = pull.in_contact && click.off_ns >= CLICK_PAUSE_NS && speed >= CLICK_LEAST_SPEED;
     if (pull.in_contact)
         click.off_ns = 0;
-    else if (pull.is_usable)  // only a known lack of contact counts as off the surface
+    else if (pull.is_usable)  // if the relevance is unusable, a missing contact proves nothing
         click.off_ns = std::min(click.off_ns + dt_ns, CLICK_PAUSE_NS);
     if (!settings.clicks || !caps.outputs_force) {
         click.left_ns = 0;
@@ -237,14 +237,14 @@ ForceStep feel(const ForceSettings& settings, const DeviceCaps& caps, const Rele
             .objects = growth.contacts};
 }
 
-/// Returns the maximum change of the force in a tick. It grows with the hand's speed, so a slow hand feels no jolt
-/// where the law is steep, such as 1200 N/m for two voxels where a ball meets a thin sheet.
+/// Returns the maximum change of the force in a tick. The limit grows with the hand's speed, so that a slow hand feels
+/// no jolt where the force law is steep: 1200 N/m over two voxels where the ball meets a thin sheet.
 double slew_at(const glm::dvec3& velocity)
 {
     return std::clamp(GENTLE_SLEW_N * glm::length(velocity) / GENTLE_SPEED, GENTLE_SLEW_N, SLEW_N);
 }
 
-/// Applies two limits: a ball around 0, and a ball around the last force. The second ball's centre lies in the first.
+/// Limits the force to two balls: one around 0, and one around the last force, whose centre lies in the first ball.
 void limit(const DeviceCaps& caps, const glm::dvec3& wanted, ForceMemory& memory)
 {
     const double held = caps.outputs_force ? force_allowed(caps, memory.heat) : caps.peak_force_n;

@@ -45,21 +45,21 @@ enum ForceFlag : uint32_t {
 /// that trembles on a surface feels no buzz.
 struct ClickMemory {
     glm::dvec3 peak_n{0.0};  ///< peak of the pulse in progress
-    uint64_t left_ns = 0;    ///< remaining time of the pulse; 0: there is none
+    uint64_t left_ns = 0;    ///< remaining time of the pulse; 0: no pulse
     uint64_t off_ns = 0;     ///< how long nothing has been touched
 };
 inline constexpr double CLICK_N = 0.25;
 inline constexpr double CLICK_FULL_SPEED = 0.1, CLICK_LEAST_SPEED = 0.01;  ///< m/s
-inline constexpr uint64_t CLICK_NS = 16'000'000;  ///< slope of at most 0.049 N per tick, as gentle as other forces
+inline constexpr uint64_t CLICK_NS = 16'000'000;  ///< the pulse changes by at most 0.049 N a tick, below GENTLE_SLEW_N
 inline constexpr uint64_t CLICK_PAUSE_NS = 100'000'000;
 
 struct ForceMemory {
     bool has_last = false;
     DeviceState last;             ///< the last good state
     DeviceState candidate;        ///< the last rejected state
-    int glitches = 0;             ///< number of rejected states in a row, all near `candidate`
+    int glitches = 0;             ///< number of consecutively rejected states, all near `candidate`
     glm::dvec3 velocity{0.0};     ///< m/s, smoothed
-    glm::dvec3 moved_m{0.0};      ///< motion between the last two states: for the thesis's damping
+    glm::dvec3 moved_m{0.0};      ///< motion between the last two states, for damping as in the thesis
     glm::dvec3 force_n{0.0};      ///< the last force
     bool has_begun = false;       ///< the engagement is rising
     double engagement = 0.0;      ///< 0 ... 1: fades in after the device has appeared or jumped
@@ -71,7 +71,7 @@ struct ForceMemory {
     uint32_t flags = 0;          ///< FORCE_FAULT is latched
     uint32_t reset = 0;          ///< ForceSettings::reset, last seen
 
-    // Cross-fade between two pulls: after a change of mode, law, object or limits
+    // State of the cross-fade between two pulls, after a change of mode, law, object or limits
     TouchMode mode = TouchMode::proximity;
     ProxyLaw law = ProxyLaw::potential;
     uint32_t object = 0;
@@ -93,26 +93,26 @@ struct ForceStep {
     glm::dvec3 probe{0.0};     ///< physical
     glm::dvec3 velocity{0.0};  ///< velocity of the probe, physical units per second, smoothed
     glm::dvec3 proxy{0.0};     ///< physical position; equals the probe's if there is no contact
-    glm::dvec3 middle{0.0};    ///< physical; where tools act: at the probe unless ForceSettings::finds_middle
+    glm::dvec3 middle{0.0};    ///< point where tools act, physical; the probe's unless ForceSettings::finds_middle
     bool in_contact = false;
     double relevant_share = 0.0;
     uint32_t flags = 0;
     uint32_t sequence = 0;   ///< number to write with the force
-    double made_j = 0.0;     ///< generated energy that the observer found and that is not yet dissipated
+    double made_j = 0.0;     ///< energy that the observer found to be generated and that damping has not removed yet
     uint32_t objects = 0;    ///< number of objects touched so far, in object following
     double latency_s = 0.0;  ///< measured; 0 if the device does not report it
 };
 
 inline constexpr uint64_t RELEVANCE_FADE_NS = 100'000'000;    ///< duration of the fade while relevance is unusable
 inline constexpr uint64_t CONTACT_FADE_NS = 20'000'000;       ///< keeps damping from setting in abruptly
-inline constexpr uint64_t MODE_FADE_NS = 100'000'000;         ///< from one pull to another
-inline constexpr uint64_t STRENGTH_FADE_NS = 200'000'000;     ///< from no strength to all of it
+inline constexpr uint64_t MODE_FADE_NS = 100'000'000;         ///< duration of the cross-fade between two pulls
+inline constexpr uint64_t STRENGTH_FADE_NS = 200'000'000;     ///< duration of a fade of the strength from 0 to 1
 inline constexpr uint64_t ENGAGE_NS = 1'000'000'000;          ///< for devices with motors
 inline constexpr uint64_t ENGAGE_SIMULATED_NS = 100'000'000;  ///< for the mouse
-inline constexpr double ENGAGE_BELOW_N = 0.2;                 ///< as in CHAI3D, so that a device never starts with a
-                                                              ///< jerk
+inline constexpr double ENGAGE_BELOW_N = 0.2;                 ///< a device engages only while the force is below
+                                                              ///< this, as in CHAI3D: no device starts with a jerk
 inline constexpr uint64_t SILENCE_NS = 20'000'000;            ///< a device silent for that long counts as absent
-inline constexpr double GLITCH_M = 0.005;                     ///< no hand moves that far in one tick
+inline constexpr double GLITCH_M = 0.005;                     ///< a hand moves less than this in one tick
 inline constexpr int GLITCHES_TO_ACCEPT = 3;                  ///< number of states in a row at a new position after
                                                               ///< which the device counts as moved
 inline constexpr double MAX_DAMPING = 1.2;                    ///< N s/m; more is unstable with jitter and no friction

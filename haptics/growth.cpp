@@ -8,7 +8,7 @@
 namespace shvr {
 namespace {
 
-/// Returns the runs of `mask` that contain `seeds`, found by doubling steps in both directions. `seeds` lie in `mask`.
+/// Returns the runs of `mask` that contain a bit of `seeds`, a subset of `mask`, by shifts of doubling width.
 uint32_t fill_runs(uint32_t seeds, uint32_t mask)
 {
     uint32_t up = seeds, down = seeds, up_mask = mask, down_mask = mask;
@@ -21,7 +21,7 @@ uint32_t fill_runs(uint32_t seeds, uint32_t mask)
     return up | down;
 }
 
-/// Returns a mask of the bits that are voxels in the row's word with index `word`.
+/// Returns the mask of those bits in word `word` of a row that stand for voxels: the last word may have unused bits.
 uint32_t valid_bits(const RelevancePatch& patch, int32_t word)
 {
     const int32_t rest = patch.size.x - 32 * word;
@@ -49,7 +49,7 @@ struct Growing {
         list.waits[at / 32] &= ~(1u << (at % 32));
         return at;
     }
-    /// Adds seeds to word `at` and queues the word; returns whether a voxel was added. `word`: its index in its row.
+    /// Adds seeds to word `at` and queues the word; returns whether a voxel was added. `word`: its index in the row.
     bool seed(uint32_t at, int32_t word, uint32_t seeds)
     {
         const uint32_t allowed = mask.words[at] & valid_bits(mask, word);
@@ -224,7 +224,7 @@ void forget_object(GrowthMemory& memory) noexcept
 const RelevancePatch& advance_object(const RelevancePatch& patch, const glm::dvec3& centre, double radius,
                                      GrowthMemory& memory) noexcept
 {
-    // The patch of a new contact was replaced before growth began: the next tick makes contact again.
+    // If a newer patch replaced that of a new contact before growth began, drops the contact; the next tick retries.
     if (memory.is_growing && !memory.has_mask && patch.sequence != memory.seen_sequence)
         memory.is_growing = memory.is_new_contact = false;
     const bool is_new = patch.sequence != 0 && patch.sequence != memory.seen_sequence && patch.is_well_formed();

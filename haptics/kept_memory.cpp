@@ -22,14 +22,14 @@ Pages pages_of(void* begin, size_t bytes)
     return {reinterpret_cast<std::byte*>(first), end - first};
 }
 
-/// Loads the pages with the advice `how`, and locks them. Locking also loads them, unless the system refuses the lock.
+/// Applies the advice `how` (madvise) and locks the pages. Locking also loads them, unless the system refuses the lock.
 bool keep(const Pages& pages, int how) noexcept
 {
     static_cast<void>(::madvise(pages.begin, pages.bytes, how));
     return ::mlock(pages.begin, pages.bytes) == 0;
 }
 
-/// Selects the program and the libraries of its arithmetic and clock, not the drivers, which are many times larger.
+/// Returns true for the program and the libraries that ticks call, but not for drivers, which are many times larger.
 bool is_used_by_ticks(const char* file)
 {
     return file[0] == '\0' || std::strstr(file, "/libc.so") || std::strstr(file, "/libm.so");

@@ -1,7 +1,7 @@
 #pragma once
 // Locks memory that a thread with deadlines needs. A page fault costs a tick microseconds if the page is still
-// somewhere in memory, and milliseconds if it must be read from disk; and tens of gigabytes of a scan passing through
-// memory evict pages that were not used for a while, such as the code that a first touch runs.
+// somewhere in memory, and milliseconds if it must be read from disk. A scan of tens of gigabytes that passes through
+// memory evicts pages that were not used for a while, such as the code that runs only at the first touch.
 //
 // Any thread; the calls take milliseconds at most, or the duration of disk reads if the program's file is not in
 // memory.
@@ -10,14 +10,14 @@
 
 namespace shvr {
 
-/// Loads a range into memory, and locks it there for this object's lifetime, as far as the system allows.
+/// Loads a range into memory and locks the range there for this object's lifetime, as far as the system allows.
 class KeptMemory {
 public:
     KeptMemory(void* begin, size_t bytes) noexcept;
     ~KeptMemory();
     KeptMemory(const KeptMemory&) = delete;
     KeptMemory& operator=(const KeptMemory&) = delete;
-    /// Returns false if the memory is loaded, but the system may evict it (RLIMIT_MEMLOCK, typically 8 MiB).
+    /// Returns false if the memory is loaded but not locked (RLIMIT_MEMLOCK, typically 8 MiB): the system may evict it.
     bool is_kept() const { return is_kept_; }
 
 private:

@@ -54,7 +54,7 @@ ModePull pull_to_object(const ForceSettings& settings, const RelevancePatch& pat
     const bool may_grow = is_finite(probe) && patch.settings == settings.relevance_settings;
     const RelevancePatch& object = may_grow ? advance_object(patch, probe, radius, growth) : growth.object();
     ModePull pull = pull_in(settings, object, probe);
-    // A ball outside the known region may still touch its object.
+    // Where too little of the ball is known, the probe counts as on its object, since the unknown part may contain it.
     const RelevancePatch& felt = object.sequence == 0 ? patch : object;
     const bool is_on = pull.in_contact || felt.known_part(probe, radius).share < MIN_KNOWN_SHARE;
     if (may_grow) keep_contact(patch, probe, radius, is_on, now_ns, growth);
@@ -76,7 +76,7 @@ ModePull pull_of(const ForceSettings& settings, const RelevancePatch& patch, con
         case TouchMode::surface: pull = pull_to_surface(settings, patch, probe, surface); break;
         case TouchMode::object: pull = pull_to_object(settings, patch, probe, now_ns, growth); break;
     }
-    // An object is as old as the patch it was grown in; without an object, nothing is felt and the patch's age counts.
+    // A grown object is as old as its patch. Without an object nothing is felt, and the latest patch's age counts.
     const bool is_object = settings.mode == TouchMode::object && growth.has_object;
     const RelevancePatch& felt = is_object ? growth.object() : patch;
     pull.known_share = felt.known_part(probe, settings.probe_radius).share;

@@ -10,7 +10,7 @@
 namespace shvr {
 namespace {
 
-/// Integrals along one chord of 1, t and t^2, where t = x - centre.x.
+/// Integrals of 1, t and t^2 along one chord, where t = x - centre.x.
 struct Moments {
     double length = 0.0, first = 0.0, second = 0.0;
 };
@@ -19,8 +19,8 @@ struct Chord {
     double lower = 0.0, upper = 0.0;  ///< chord in voxels from the patch's lower corner, clipped to the patch
 };
 
-/// Integrates runs of set bits word by word: a run across two words is two touching intervals, whose integrals add up
-/// to the run's. Only the chord's ends are fractions of a voxel. Inlined, since calls cost a tick 5 to 15 %.
+/// Integrates runs of set bits word by word: a run that spans two words is treated as two adjacent intervals. Only the
+/// ends of the chord are fractions of a voxel. Inlined, since calls would make a tick 5 to 15 % slower.
 [[gnu::always_inline]] inline Moments integrate_row(const uint32_t* words, const Chord& chord, double centre,
                                                     double spacing)
 {
@@ -38,7 +38,7 @@ struct Chord {
             moments.length += b - a;
             moments.first += 0.5 * (b * b - a * a);
             moments.second += (b * b * b - a * a * a) / 3.0;
-            // Adding the lowest bit carries through the run and clears it; the bit set by the carry is masked out.
+            // Adding the lowest set bit carries through the lowest run; the & clears the run and the carried bit.
             bits &= bits + (bits & (0u - bits));
         }
         voxel = word_last + 1;
@@ -57,8 +57,8 @@ RowRange rows_within(double centre, double reach, int32_t count)
     return {int32_t(begin), int32_t(end)};
 }
 
-/// Places and weights of the integration lines across a row of voxels, the same along y and along z. Places are fixed
-/// relative to the voxels, not to the ball: only then are the sums of the potential law exact gradients.
+/// Positions and weights of the integration lines across a row of voxels, the same along y and z. The positions are
+/// fixed relative to the voxels, not to the ball: only then are the sums of the potential law exact gradients.
 struct RowRule {
     std::array<double, 3> places{};   ///< voxels from the row's lower side
     std::array<double, 3> weights{};  ///< with a sum of 1
@@ -84,7 +84,7 @@ bool is_empty(const uint32_t* words, int32_t count)
     return std::all_of(words, words + count, [](uint32_t word) { return word == 0; });
 }
 
-/// Maps three numbers in 0 ... 1 to a point in the ball of radius 1. Uniform numbers give uniform points.
+/// Maps three numbers in 0 ... 1 to a point in the unit ball. Uniform numbers give points of uniform density.
 glm::dvec3 point_of(double of_volume, double of_height, double of_turn)
 {
     const double r = std::cbrt(of_volume), z = 2.0 * of_height - 1.0;
@@ -92,7 +92,7 @@ glm::dvec3 point_of(double of_volume, double of_height, double of_turn)
     return r * glm::dvec3(across * std::cos(phi), across * std::sin(phi), z);
 }
 
-/// `IS_CUT`: part of the ball lies beyond `reach`. Most balls are whole, and take a tenth less time when it is false.
+/// `IS_CUT`: part of the ball lies beyond `reach`. The common case is a whole ball, for which false is a tenth faster.
 template <bool IS_CUT>
 BallIntegrals integrate_part(const RelevancePatch& patch, const glm::dvec3& centre, double radius,
                              const glm::dvec3& reach) noexcept
@@ -115,7 +115,7 @@ BallIntegrals integrate_part(const RelevancePatch& patch, const glm::dvec3& cent
         ball.second += weight * (moments.second + (dy * dy + dz * dz) * moments.length);
     };
 
-    // A line stands for a voxel's width, so at a cut its weight falls from 1 to 0 over that width.
+    // A line stands for the full width of a voxel, so at a cut the line's weight falls from 1 to 0 over that width.
     const auto weight_at = [&](int axis, double away) {
         if (!IS_CUT || reach[axis] >= radius) return 1.0;
         return std::clamp((reach[axis] - std::abs(away)) / spacing[axis] + 0.5, 0.0, 1.0);
@@ -124,7 +124,7 @@ BallIntegrals integrate_part(const RelevancePatch& patch, const glm::dvec3& cent
     const RowRange slices =
         rows_within(c.z, (IS_CUT ? std::min(radius, reach.z + spacing.z) : radius) / spacing.z, patch.size.z);
     for (int32_t z = slices.begin; z < slices.end; ++z) {
-        // The ball's largest disc in the slice lies where the slice is nearest to the ball's centre.
+        // The largest disc of the ball within the slice bounds the chords; it is nearest to the ball's centre.
         const double nearest = (std::clamp(c.z, double(z), double(z + 1)) - c.z) * spacing.z;
         const double disc = std::sqrt(std::max(radius * radius - nearest * nearest, 0.0));
         const RowRange rows =
@@ -179,7 +179,7 @@ std::vector<glm::dvec3> even_points(int count)
 }
 
 namespace {
-/// Drawn before main(), so that no tick pays for it.
+/// Initialized before main(), so that no tick spends time on drawing the points.
 const std::vector<glm::dvec3> THESIS_POINTS = random_points(SAMPLE_POINTS);
 }  // namespace
 
@@ -210,7 +210,7 @@ Proxy find_sampled_proxy(const RelevancePatch& patch, const glm::dvec3& centre, 
 
 namespace {
 
-/// Returns the divisor of the integral of a - p. Only for the laws that integrate.
+/// Returns the number by which the integral of a - p is divided. Only for laws that integrate.
 double denominator_of(ProxyLaw law, const BallIntegrals& ball, double radius, double whole) noexcept
 {
     switch (law) {
@@ -218,7 +218,7 @@ double denominator_of(ProxyLaw law, const BallIntegrals& ball, double radius, do
         case ProxyLaw::thesis: return ball.volume;
         case ProxyLaw::potential: {
             // The weight 1 - |a - p|^2 / r^2 is 0 at the rim, so the chords' ends contribute nothing to the derivative
-            // of the weights' sum: the derivative is 2 / r^2 times `first`, exactly, even for a finite number of rows.
+            // of the sum of weights: it is exactly 2 / r^2 times `first`, even for a finite number of rows.
             const double weighted = std::max(ball.volume - ball.second / (radius * radius), 0.0);
             return weighted + POTENTIAL_FLOOR * whole;
         }

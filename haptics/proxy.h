@@ -4,14 +4,14 @@
 // probe's position, since chords shrink to 0 at the ball's rim. Across y and z, a row is represented by a line through
 // its voxels' centres or, for small balls, by four or nine lines.
 //
-// Three laws:
+// Three laws (a: relevant point, p: probe, r: radius):
 //   mean      proxy = mean of the relevant points in the ball: as in the thesis (eq. 3.3 - 3.5), without sampling noise
 //   potential offset = sum(a - p) / (sum(1 - |a - p|^2 / r^2) + eps N): the gradient of log(S + eps N), so no loop of
 //             the hand gains energy, and the force grows from 0 when the first voxel enters. N is the ball's volume.
 //   thesis    mean over 3000 points drawn once at random, as in the thesis: noisy and not continuous (1.7 to 2.5 %
 //             of the radius where `mean` has 0.1 %). For comparison
 //
-// Where the ball sticks out of the patch, the unknown part is left out of the integral and never taken as empty: both
+// Where the ball sticks out of the patch, the integral leaves the unknown part out instead of taking it as empty: both
 // sides are cut alike (KnownPart), and the offset is weighted by the known share. So nothing pulls along a straight
 // tube at the border of the known region, and the pull fades to 0 as the centre reaches that border.
 //
@@ -33,7 +33,7 @@ struct BallIntegrals {
     glm::dvec3 first{0.0};  ///< integral of a - p
     double second = 0.0;    ///< integral of |a - p|^2
 };
-/// Integrates over the ball, except voxels farther than `reach` from the centre along any axis.
+/// Integrates over the ball, without the voxels that are farther than `reach` from the centre along any axis.
 BallIntegrals integrate(const RelevancePatch& patch, const glm::dvec3& centre, double radius,
                         const glm::dvec3& reach) noexcept;
 inline BallIntegrals integrate(const RelevancePatch& patch, const glm::dvec3& centre, double radius) noexcept
@@ -52,22 +52,22 @@ struct Proxy {
 inline constexpr double POTENTIAL_FLOOR = 0.05;  ///< eps above
 Proxy find_proxy(const RelevancePatch& patch, const glm::dvec3& centre, double radius, ProxyLaw law) noexcept;
 
-/// Returns the vector from the ball's centre to the middle of the structure that the ball touches; tools act there. The
-/// middle is the exact mean in a second ball, centred at the first ball's exact mean, since the first ball's rim cuts
+/// Returns the vector from the ball's centre to the middle of the structure that the ball touches, where tools act. The
+/// middle is the exact mean in a second ball around the first ball's exact mean, since the rim of the first ball cuts
 /// more off the far side of a thick tube. In balls of 1.5 times a tube's radius, the second mean is within 0.11 voxels
-/// of the axis (RMS, guided hand); the first mean is within 0.65.
+/// of the axis (RMS, guided hand), the first mean within 0.65.
 glm::dvec3 find_middle(const RelevancePatch& patch, const glm::dvec3& centre, double radius, ProxyLaw law,
                        const Proxy& proxy) noexcept;
 
 // ---- By sample points, for comparison (`shvr haptics bench --sweep`)
 // --------------------------------------------------
 
-/// Returns random points, uniform in a ball of radius 1 (algorithm 2 of the thesis); the same on every machine.
+/// Returns random points of uniform density in the unit ball (algorithm 2 of the thesis); the same on every machine.
 std::vector<glm::dvec3> random_points(int count);
-/// Returns points in the ball with low discrepancy: an additive recurrence with the plastic number (Roberts 2018) over
-/// equal volumes.
+/// Returns low-discrepancy points in the unit ball: an additive recurrence with the plastic number (Roberts 2018),
+/// mapped to equal volumes.
 std::vector<glm::dvec3> even_points(int count);
-/// Returns the proxy at the mean of the relevant ones among `points`.
+/// Returns the proxy as the mean of those of the `points` that are relevant.
 Proxy find_sampled_proxy(const RelevancePatch& patch, const glm::dvec3& centre, double radius,
                          std::span<const glm::dvec3> points) noexcept;
 

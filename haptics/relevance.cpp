@@ -32,7 +32,7 @@ bool RelevancePatch::covers(const glm::dvec3& centre, double radius) const
     for (int axis = 0; axis < 3; ++axis) {
         const double lower = (centre[axis] - radius) / spacing[axis], upper = (centre[axis] + radius) / spacing[axis];
         if (!std::isfinite(lower) || !std::isfinite(upper)) return false;
-        // A ball outside the volume along any axis contains no voxels, so its relevance is known.
+        // If the ball lies beyond the volume along any axis, it contains no voxels, so its relevance is known: none.
         if (upper <= 0.0 || lower >= double(volume_size[axis])) return true;
     }
     for (int axis = 0; axis < 3; ++axis) {
@@ -50,7 +50,7 @@ KnownPart RelevancePatch::known_part(const glm::dvec3& centre, double radius) co
     if (sequence == 0 || !(radius > 0.0) || !std::isfinite(centre.x + centre.y + centre.z + radius)) return known;
     known.share = 1.0;
     for (int axis = 0; axis < 3; ++axis) {
-        // Nothing beyond the volume's own border is relevant, so that part counts as known.
+        // Outside the volume nothing is relevant, so the part of the ball beyond the volume's border counts as known.
         const double lower = (centre[axis] - double(origin[axis]) * spacing[axis]);
         const double upper = (double(origin[axis] + size[axis]) * spacing[axis] - centre[axis]);
         double reach = radius;

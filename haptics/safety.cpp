@@ -6,11 +6,11 @@
 namespace shvr {
 namespace {
 
-/// A device's stiffness limit applies at two ticks: 2 ms, plus half a tick for which a force is held, plus the delay of
-/// smoothing the velocity at 100 Hz (fitted to K = 300 B at two ticks).
+/// A device's stiffness limit holds for a total delay: two ticks (2 ms), half a tick during which a force is held, and
+/// the delay of smoothing the velocity at 100 Hz (fitted to K = 300 B at two ticks).
 constexpr double USUAL_LATENCY_S = 0.002, HELD_S = 0.0005, VELOCITY_LAG_S = 0.00083;
 constexpr double LATENCY_SMOOTHING_S = 0.1;
-constexpr double SLOWEST_TAKEN = 0.002;  ///< speed in m/s below which damping would divide by nearly nothing
+constexpr double SLOWEST_TAKEN = 0.002;  ///< speed in m/s below which damping is off, to avoid a division by nearly 0
 
 double at_least_zero(double value, double most)
 {
@@ -77,7 +77,7 @@ void measure_latency(const DeviceCaps& caps, const DeviceState& state, uint64_t 
     if (!caps.tells_force_sequence || state.force_sequence == 0) return;
     const SentForce effect = force_in_effect(caps, state, now_ns, sent);
     if (effect.sequence == 0 || now_ns < effect.time_ns) return;
-    // A force acts for a tick before the state that reports it.
+    // A force acts for one tick before the state that reports it, so that tick is not part of the latency.
     const double latency_s = std::max(double(now_ns - effect.time_ns) * 1e-9 - tick_s, 0.0);
     const double share = 1.0 - std::exp(-tick_s / LATENCY_SMOOTHING_S);
     sent.latency_s += share * (latency_s - sent.latency_s);

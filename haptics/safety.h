@@ -11,29 +11,29 @@
 
 namespace shvr {
 
-// ---- Heat: no 10 s have a root mean square above the continuous force ----------------------------------------------
+// ---- Heat: the RMS force over any 10 s is at most the continuous force --------------------------------------------
 
-/// Keeps q, the force's square smoothed with HEAT_S, at or below continuous^2 / (1 + HEAT_S / 10 s). Over 10 s, the
-/// square's integral is HEAT_S times q's growth plus q's integral, so the mean square is at most continuous^2.
+/// Keeps q, the squared force smoothed over HEAT_S, at or below continuous^2 / (1 + HEAT_S / 10 s). The square's
+/// integral over 10 s is HEAT_S times q's growth plus q's integral, so the mean square is at most continuous^2.
 inline constexpr double HEAT_S = 2.0;
 inline constexpr double HEAT_WINDOW_S = 10.0;
 struct HeatMemory {
     double square = 0.0;  ///< N^2
 };
-/// Returns the maximum force now: the peak while cool, then gradually less, and the continuous force when hot.
+/// Returns the maximum force now: the peak while the motors are cool, then less and less down to the continuous force.
 double force_allowed(const DeviceCaps& caps, const HeatMemory& heat);
 void add_heat(const glm::dvec3& force_n, double dt_s, HeatMemory& heat);
 
 // ---- Rate: fewer than 400 states a second halve the stiffness, fewer than 200 end the force -------------------------
 
 inline constexpr uint64_t RATE_WINDOW_NS = 20'000'000;
-inline constexpr size_t SLOW_STATES = 8, TOO_SLOW_STATES = 4;  ///< per window: 400 and 200 a second
+inline constexpr size_t SLOW_STATES = 8, TOO_SLOW_STATES = 4;  ///< states per window at 400 and 200 a second
 struct RateMemory {
     std::array<uint64_t, SLOW_STATES> fresh_ns{};  ///< ring of times
     uint32_t count = 0;                            ///< states since the device appeared
 };
 void add_state(uint64_t now_ns, RateMemory& rate);
-/// Returns the factor of the stiffness: 1, 1/2 or 0. It is 1 until enough states have arrived to tell.
+/// Returns a factor for the stiffness: 1, 1/2 or 0. The factor is 1 until enough states have arrived for a rate.
 double share_for_rate(uint64_t now_ns, const RateMemory& rate);
 
 // ---- Forces sent, and the times at which they were in effect --------------------------------------------------------
@@ -49,13 +49,13 @@ struct SentForces {
     double latency_s = 0.0;  ///< measured, smoothed; 0: not yet
 };
 void add_sent(const glm::dvec3& force_n, uint64_t now_ns, SentForces& sent);
-/// Returns the force in effect at a state, by the number that the device reports or, without one, by its latency.
+/// Returns the force that was in effect at a state, by the force number in the state or, without one, by the latency.
 SentForce force_in_effect(const DeviceCaps& caps, const DeviceState& state, uint64_t now_ns, const SentForces& sent);
 void measure_latency(const DeviceCaps& caps, const DeviceState& state, uint64_t now_ns, double tick_s,
                      SentForces& sent);
 
-/// Returns the stiffness that is stable at the latency that the device states, or at the measured one if longer. The
-/// device's limit applies at two ticks; beyond, K (latency + half a tick + velocity lag) stays constant.
+/// Returns the stiffness that is stable at the latency that the device states or the measured latency, the longer of
+/// the two. The device's limit applies at two ticks; beyond, K (latency + half a tick + velocity lag) stays constant.
 double stable_stiffness(const DeviceCaps& caps, const SentForces& sent);
 
 // ---- Energy: the passivity observer and controller of Hannaford and Ryu ---------------------------------------------
@@ -67,20 +67,20 @@ struct EnergyMemory {
     glm::dvec3 position_m{0.0}, field_n{0.0};  ///< position and undelayed force at the last state
     double made_j = 0.0;                       ///< energy not dissipated yet; at least 0
 };
-inline constexpr double MAX_TAKING = 2.0;  ///< N s/m: more damping is itself unstable at two ticks
+inline constexpr double MAX_TAKING = 2.0;  ///< N s/m: more damping is unstable itself at two ticks of delay
 inline constexpr double TAKING_MOST_N = 0.3;
 void observe_energy(const glm::dvec3& position_m, const glm::dvec3& field_n, const glm::dvec3& in_effect_n,
                     EnergyMemory& energy);
-/// Returns the force that dissipates energy over `dt_s`, and counts that energy as dissipated.
+/// Returns a damping force that dissipates generated energy over `dt_s`, and subtracts the energy it will remove.
 glm::dvec3 take_energy(const glm::dvec3& velocity, double dt_s, EnergyMemory& energy);
 
 // ---- The box ----------------------------------------------------------------------------------------------------------
 
-/// Factor of the force: 1 inside the box where forces are accurate, falling to 0 over BOX_MARGIN_M outside.
+/// Width of the zone around the box of accurate forces in which the force's factor falls from 1 to 0.
 inline constexpr double BOX_MARGIN_M = 0.01;
 double share_in_box(const DeviceCaps& caps, const glm::dvec3& position_m);
 
-/// Returns sanitized limits: NaN and negative values become 0, and no value exceeds those of any real device.
+/// Replaces NaN and negative limits by 0, and limits beyond those of any real device by the largest plausible value.
 DeviceCaps sane(DeviceCaps caps);
 
 }  // namespace shvr

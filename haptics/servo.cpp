@@ -32,7 +32,7 @@ public:
         timespec deadline{};
         deadline.tv_sec = time_t(deadline_ns / SECOND_NS);
         deadline.tv_nsec = long(deadline_ns % SECOND_NS);
-        // A signal interrupts the sleep; any other error would be a bug here. In both cases check the clock again.
+        // A signal may interrupt the sleep; any other error would be a bug here. Either way, checks the clock again.
         while (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &deadline, nullptr) != 0 && now_ns() < deadline_ns) {
         }
     }
@@ -71,7 +71,7 @@ double TimeHistogram::quantile_us(double share) const noexcept
     for (size_t bin = 0; bin < BINS; ++bin) {
         sum += counts[bin];
         if (sum == 0 || double(sum) < wanted) continue;
-        // The last bin has no upper end, so the worst value stands for it.
+        // The last bin has no upper end, so the worst value measured is returned for it.
         return bin + 1 < BINS ? double(uint64_t{1} << bin) : double(worst_ns) * 1e-3;
     }
     return 0.0;

@@ -20,7 +20,7 @@
 
 namespace shvr {
 
-/// The clock and the sleep, which tests replace.
+/// The servo's clock and sleep, which tests replace.
 class Pacing {
 public:
     virtual ~Pacing() = default;
@@ -31,14 +31,14 @@ public:
 /// Returns the real clock: CLOCK_MONOTONIC, absolute sleeps.
 std::unique_ptr<Pacing> real_pacing();
 
-/// Counts by powers of two of a microsecond: bin 0 below 1 us, bin i from 2^(i-1) to 2^i us; the last bin has no end.
+/// Counts durations by powers of two: bin 0 below 1 us, bin i from 2^(i-1) to 2^i us; the last bin has no upper end.
 struct TimeHistogram {
     static constexpr size_t BINS = 24;
     std::array<uint64_t, BINS> counts{};
     uint64_t worst_ns = 0;
     void add(uint64_t nanoseconds) noexcept;
     uint64_t total() const noexcept;
-    /// Returns the upper end, in microseconds, of the bin where the cumulative count reaches `share`; 0 if empty.
+    /// Returns the upper end, in microseconds, of the bin where the cumulative share reaches `share`; 0 without values.
     double quantile_us(double share) const noexcept;
 };
 
@@ -59,7 +59,7 @@ struct ServoState {
     DeviceCaps caps;
     TimeHistogram lateness;          ///< how late ticks started
     TimeHistogram duration;          ///< work time of each tick
-    TimeHistogram relevance_age;     ///< age of the patch used, on ticks with assistance
+    TimeHistogram relevance_age;     ///< age of the patch in use, over ticks with assistance
     uint64_t relevance_time_ns = 0;  ///< time of that patch; 0: none yet
 };
 
@@ -83,7 +83,7 @@ public:
     /// Returns whether the system granted SCHED_FIFO; if not, only the timer slack is reduced.
     bool is_realtime() const { return is_realtime_; }
     /// Returns whether all memory needed in a tick could be locked (kept_memory.h). Valid after the first tick. If
-    /// false, that memory is present at the first tick, but may be paged out when the program has run for long.
+    /// false, the first tick has loaded that memory, but the system may page it out when the program has run for long.
     bool keeps_memory() const { return keeps_memory_; }
 
 private:

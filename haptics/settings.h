@@ -10,7 +10,7 @@
 
 namespace shvr {
 
-/// Maps the device's workspace into the volume: point = origin + to_volume * position_m, a rotation times a scale.
+/// Maps the device's workspace into the volume: point = origin + to_volume * position_m. Rotates and scales uniformly.
 struct Workspace {
     glm::dmat3 to_volume{1.0};  ///< physical units per metre
     glm::dvec3 origin{0.0};     ///< physical
@@ -23,7 +23,7 @@ struct ForceSettings {
     bool assistance = false;  ///< off: no force
     ProxyLaw law = ProxyLaw::potential;
     double probe_radius = 1.0;  ///< physical units
-    double stiffness = 300.0;   ///< N/m for a probe of PROBE_M in the hand; the device's limit applies at the hand
+    double stiffness = 300.0;   ///< N/m for a probe of PROBE_M in the hand; the device's limit applies after scaling
     double damping = 1.0;       ///< N s/m, at most 1.2
     Workspace workspace;
     uint32_t reset = 0;  ///< a change clears a latched fault
@@ -36,7 +36,7 @@ struct ForceSettings {
     bool clicks = false;                  ///< a short pulse when contact begins; only for devices with motors
     bool let_go = false;                  ///< no force from the next tick on; when unset, the force fades in again
     bool finds_middle = false;            ///< tools act at the middle of the touched structure; no effect on the force
-    uint32_t relevance_settings = 0;      ///< counts changes of threshold and groups; outdated relevance fades out
+    uint32_t relevance_settings = 0;      ///< counts changes of threshold and groups; forces of outdated relevance fade
     bool operator==(const ForceSettings&) const = default;
 };
 

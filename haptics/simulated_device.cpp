@@ -7,7 +7,7 @@
 namespace shvr {
 namespace {
 
-/// Returns exp(a) by scaling, Taylor series and squaring. With norms below 1/16 the series' remainder is 1e-16.
+/// Returns exp(a) by scaling, Taylor series and squaring. The series is used for norms below 1/16: remainder 1e-16.
 glm::dmat2 exponential(glm::dmat2 a)
 {
     int halvings = 0;
@@ -22,7 +22,7 @@ glm::dmat2 exponential(glm::dmat2 a)
     return sum;
 }
 
-/// Returns the exact motion over one tick with constant wish and force: stable for every hand and tick length.
+/// Returns the exact motion over a tick with constant wish and force, so any hand and tick length is stable.
 glm::dmat2 propagator_of(const HandModel& hand)
 {
     if (hand.mass_kg > 0.0) {
@@ -62,7 +62,7 @@ ReadResult SimulatedDevice::read(DeviceState& state) noexcept
         velocity_ = glm::dvec3(0.0);
         in_flight_.fill({});  // forces that were written at the old position must not act at the new one
     }
-    // write() stores this tick's force in the slot of `ticks_`; without a write the last force stays.
+    // write() stores this tick's force in the slot of `ticks_`. Without a write, the last force stays in effect.
     const size_t slots = in_flight_.size();
     const Written& applied = in_flight_[(ticks_ + slots - size_t(model_.delay_ticks)) % slots];
     const glm::dvec3 rest = wish.position_m + applied.force_n / model_.stiffness;

@@ -24,7 +24,7 @@ namespace shvr {
 struct HandWish {
     glm::dvec3 position_m{0.0};
     uint32_t buttons = 0;
-    uint32_t jump = 0;  ///< a change moves the hand to the wish at once: the probe was placed, not moved
+    uint32_t jump = 0;  ///< a change moves the hand to the wish at once: repositioned, not moved by the user
 };
 
 struct HandModel {
@@ -42,9 +42,9 @@ public:
     explicit SimulatedDevice(const HandModel& model = MOUSE_HAND);
     Latest<HandWish>& wish() { return wish_; }
 
-    /// A hand with a mass stands for a device with motors; the mouse has no motors, though forces move its hand.
+    /// A hand with a mass stands for a device with motors; the mouse has none, though forces move its hand.
     DeviceCaps caps() const noexcept override;
-    /// Moves the hand on by one tick. Always fresh; `time_ns` counts ticks.
+    /// Advances the hand by one tick. The result is always `fresh`; `time_ns` counts ticks.
     ReadResult read(DeviceState& state) noexcept override;
     bool write(const glm::dvec3& force_n, uint32_t sequence) noexcept override;
 
@@ -58,7 +58,7 @@ private:
         glm::dvec3 force_n{0.0};
         uint32_t sequence = 0;
     };
-    /// Maps the hand's offset from its rest position, and its velocity, to their values one tick later.
+    /// Maps the hand's offset from its rest position, and the hand's velocity, to their values one tick later.
     glm::dmat2 propagator_{1.0};
     std::array<Written, 9> in_flight_{};  ///< ring of delayed forces
 };

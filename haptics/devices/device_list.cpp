@@ -128,7 +128,7 @@ std::unique_ptr<HapticDevice> open_first_device(const DeviceOptions& options)
         try {
             if (std::unique_ptr<HapticDevice> device = open()) return device;
         } catch (const Error& error) {
-            // A Touch whose HID layout is not known may still be available through its maker's driver.
+            // If a Touch's HID layout is unknown, the maker's driver (OpenHaptics) may be able to open the device.
             if (first_trouble.empty()) first_trouble = error.what();
         }
     }

@@ -1,5 +1,5 @@
 #pragma once
-// All haptic devices of all back ends: lists and opens them. The application's thread.
+// Lists and opens the haptic devices of all back ends. Call from the application's thread.
 
 #include <cstdint>
 #include <memory>
@@ -21,7 +21,7 @@ struct DeviceListing {
     std::string id;  ///< id for `open_device`; stable as long as the device stays plugged in
     std::string name, serial;
     std::string connection;  ///< "/dev/hidraw3", "service on port 10001", "libHD.so"
-    bool has_force = false;  ///< the device would give force if that were allowed
+    bool has_force = false;  ///< the device can give force once forces are allowed
     std::string why_no_force;
     std::string why_unusable;  ///< empty: it can be opened
 };
@@ -29,15 +29,15 @@ struct DeviceListing {
 struct DeviceOptions {
     std::vector<HidProfile> profiles;
     bool allow_force = false;
-    Inverse3Options inverse3;        ///< its `allow_force` is overridden by the one above
-    OpenHapticsOptions openhaptics;  ///< its `allow_force` is overridden, too
+    Inverse3Options inverse3;        ///< its `allow_force` is ignored in favour of the one above
+    OpenHapticsOptions openhaptics;  ///< its `allow_force` is ignored as well
 };
 
 /// Lists HID devices that match a profile, the Inverse3's service, OpenHaptics if it is installed, and the mouse, which
 /// is always present and last. Opens none of them; waits for the Inverse3's service for about 0.3 s at most.
 std::vector<DeviceListing> list_devices(const DeviceOptions& options);
 
-/// Returns the row of a HID device. `can_open`: whether the system lets this user read and write it.
+/// Returns the row of a HID device. `can_open`: whether the current user has permission to read and write the device.
 DeviceListing listing_of(const HidListing& device, const HidProfile& profile, bool can_open);
 
 /// Opens the device with a listing's id; returns null for the mouse. Fails with a reason if it is gone or unusable.

@@ -18,7 +18,7 @@
 namespace shvr {
 namespace {
 
-/// hidapi's global functions share state (the last error, udev's context); functions on one open device do not.
+/// hidapi's global functions share state (the last error, udev's context), so calls must be serialized across threads.
 std::mutex& hidapi_mutex()
 {
     static std::mutex mutex;
@@ -99,8 +99,8 @@ Opened open_port(const std::string& path)
     return {nullptr, printable(hid_error(nullptr))};
 }
 
-/// Returns the device's report descriptor as the system exposes it, since hidapi 0.13 cannot query it; empty if the
-/// system does not expose it.
+/// Returns the device's report descriptor from the system, since hidapi 0.13 has no call for it; empty if the system
+/// does not expose the descriptor.
 std::vector<uint8_t> descriptor_of(const std::string& path)
 {
     const std::filesystem::path file =
@@ -195,7 +195,7 @@ std::unique_ptr<HapticDevice> open_hid_device(const std::vector<HidProfile>& pro
         };
         return make_hid_link(profile, std::move(opened.port), reopen, {.allow_force = allow_force, .realtime = true});
     }
-    // Checks profiles that only recognise a device last, since another profile may know the device's layout.
+    // Profiles that only recognise a device come last, since another profile may describe the device's layout.
     for (const HidProfile& profile : profiles) {
         if (const auto device = device_of(profile); device != devices.end())
             fail(described(*device), ": is recognised as ", profile.name,

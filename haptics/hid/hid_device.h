@@ -13,10 +13,10 @@
 
 namespace shvr {
 
-/// Returns null if no plugged-in device matches a profile. Fails if one is plugged in but cannot be opened (the udev
-/// rule is missing) or is only recognised (its profile has no input report). An unplugged device is found again when it
-/// returns. `path`: a listing's path; empty: the first device of the first profile that matches. Forces reach the
-/// device only if its profile is verified and `allow_force` is set.
+/// Returns null if no plugged-in device matches a profile. Fails if a device is plugged in but cannot be opened (the
+/// udev rule is missing) or is only recognised (its profile has no input report). A device that is unplugged later is
+/// reopened when it returns. `path`: a listing's path; empty: the first device of the first profile that matches.
+/// Forces reach the device only if its profile is verified and `allow_force` is set.
 std::unique_ptr<HapticDevice> open_hid_device(const std::vector<HidProfile>& profiles, bool allow_force,
                                               const std::string& path = {});
 

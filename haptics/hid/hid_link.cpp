@@ -25,17 +25,17 @@ using std::chrono::milliseconds;
 
 constexpr int READ_TIMEOUT_MS = 10;  ///< short, so that shutdown never has to interrupt a read
 constexpr milliseconds REOPEN_EVERY{15};
-constexpr milliseconds LOOK_EVERY{5};         ///< interval of checks whether the link should end
-constexpr int MAX_REPORTS_A_DRAIN = 256;      ///< a device that floods us must not delay the newest report
+constexpr milliseconds LOOK_EVERY{5};         ///< interval at which threads check whether the link is closing
+constexpr int MAX_REPORTS_A_DRAIN = 256;      ///< upper bound, so that a flood of reports cannot delay the newest
 constexpr uint64_t MAX_STEP_NS = 20'000'000;  ///< longest step of rate control, so that it does not leap after a pause
-// A device that reports speeds yields to forces like the mouse: with 75 N/m, settling within about 10 ms.
+// With a rate-control device, the probe yields to forces as with the mouse: 75 N/m, settling within about 10 ms.
 constexpr double GIVE_WAY = 75.0;
 constexpr double SETTLE_S = 0.01;
-constexpr int LINK_PRIORITY = 81;  ///< higher than the servo's, since both threads run briefly and then wait
+constexpr int LINK_PRIORITY = 81;  ///< above the servo's priority, since both threads run briefly and then wait
 
 /// Passed from the reader to the servo.
 struct Reading {
-    uint64_t connection = 0;  ///< number of the connection it was read on, counted from 1
+    uint64_t connection = 0;  ///< number of the connection that the state was read on, from 1
     DeviceState state;
 };
 
@@ -56,7 +56,7 @@ uint64_t steady_ns()
     return uint64_t(SteadyClock::now().time_since_epoch() / std::chrono::nanoseconds(1));
 }
 
-/// Extends the counters of one connection past their overflows, and combines data from several reports.
+/// Decodes the reports of one connection: unwraps counters that overflow, and combines the data of several reports.
 class Decoder {
 public:
     explicit Decoder(const HidProfile& profile)
@@ -66,7 +66,7 @@ public:
           force_sequence_(bits_of(profile, HidQuantity::force_sequence)),
           time_(bits_of(profile, HidQuantity::time))
     {}
-    /// Returns null if the report is malformed (`is_malformed()`), or if the device's position is still unknown.
+    /// Returns null if the report is malformed (see `is_malformed()`), or if no report has stated a position yet.
     std::optional<DeviceState> next(std::span<const uint8_t> report)
     {
         is_malformed_ = false;
@@ -128,7 +128,7 @@ public:
     {
         is_running_ = false;
         wake_writer();
-        writer_.join();  // stops the writer first, since its last report switches the force off and needs the port
+        writer_.join();  // stop the writer first: its last report switches the force off and needs the port
         reader_.join();
     }
 
@@ -162,7 +162,7 @@ public:
     }
 
 private:
-    /// Rate control: advances the position by the latest speeds.
+    /// For rate control: advances the position by the latest speeds.
     ReadResult move_on(uint64_t connection, DeviceState& state) noexcept
     {
         const uint64_t now = now_ns_();
@@ -209,14 +209,14 @@ private:
         wake_.notify_one();
     }
 
-    /// Reads the limits of the device on the port; it may be a different device than before.
+    /// Reads the limits of the device on the port, which may be a different device after a reconnection.
     DeviceCaps ask_limits(HidPort& port) const
     {
         DeviceCaps caps = profile_.limits;
         std::array<uint8_t, 1 + MAX_REPORT_BYTES> report{};
         const int size = profile_.feature ? port.read_feature(profile_.feature->id, report) : 0;
         if (size > 0) {
-            // hidapi puts the id first even if reports are unnumbered.
+            // hidapi puts the report's id in the first byte even if reports are unnumbered.
             const std::span<const uint8_t> bytes(report.data(), size_t(size));
             caps = decode_feature(profile_, profile_.feature->id == 0 ? bytes.subspan(1) : bytes);
         }
@@ -232,14 +232,14 @@ private:
         const std::lock_guard lock(port_mutex_);
         return port_;
     }
-    /// A write in progress keeps the old port alive until it is done.
+    /// Replaces the port. A write in progress keeps the old port alive until that write returns.
     void set_port(std::shared_ptr<HidPort> port)
     {
         const std::lock_guard lock(port_mutex_);
         port_ = std::move(port);
         write_failed_ = false;
     }
-    /// Does nothing if the reader has dropped that port meanwhile.
+    /// Drops the port after a failed write, unless the reader has already replaced or dropped it.
     void report_failed_write(const std::shared_ptr<HidPort>& port)
     {
         const std::lock_guard lock(port_mutex_);
@@ -252,7 +252,7 @@ private:
         while (is_running_) {
             if (const std::shared_ptr<HidPort> open = port()) {
                 read_while_there(*open, connections);
-                if (!is_running_) return;  // the writer still needs the port, for its last report
+                if (!is_running_) return;  // keep the port: the writer still needs it for its last report
                 connection_ = 0;
                 set_port(nullptr);
                 continue;
@@ -305,7 +305,7 @@ private:
 
     void send(const Command& command, bool enabled)
     {
-        // An unverified device gets no bytes at all, since their effect is unknown.
+        // An unverified device gets no output report at all, since the effect of one is unknown.
         if (!profile_.verified || !profile_.output || write_failed_) return;
         const std::shared_ptr<HidPort> open = port();
         if (open && !open->write(encode(profile_, command.force_n, command.sequence, enabled).span()))

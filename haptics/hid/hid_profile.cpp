@@ -140,7 +140,7 @@ void need_all_or_none(const JsonNode& node, const HidReport& report, std::initia
         need(node, report, quantities);
 }
 
-/// Reads several input reports. No two may be alike, and related fields must be in the same report.
+/// Reads several input reports. No two may share both id and length, and related fields must be in the same report.
 std::vector<HidReport> read_inputs(const JsonNode& node)
 {
     std::vector<HidReport> reports;
@@ -186,7 +186,7 @@ std::vector<HidMatch> read_matches(const JsonNode& node)
     return matches;
 }
 
-/// Reads a signed permutation matrix by rows. With other matrices, lengths could change and forces not oppose motion.
+/// Reads a signed permutation matrix by rows. Other matrices could change lengths, and forces would not oppose motion.
 glm::dmat3 read_axes(const JsonNode& node)
 {
     const std::vector<JsonNode> rows = node.elements(3, 3);

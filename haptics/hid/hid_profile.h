@@ -81,13 +81,13 @@ struct HidMatch {
     uint16_t usage_page = 0, usage = 0;  ///< 0: any
 };
 
-/// Maps deflection to speed: gain * ((share - dead_zone) / (1 - dead_zone))^gamma, along the deflection.
+/// Maps deflection to speed, in the direction of the deflection: gain * ((share - dead_zone) / (1 - dead_zone))^gamma.
 struct HidRate {
     double speed = 0.1;       ///< speed in m/s in the device's workspace at full deflection
     double turn_speed = 1.5;  ///< rad/s at full deflection
     double gamma = 1.5;       ///< above 1: finer near the centre
-    double dead_zone = 0.05;  ///< fraction of the deflection that counts as none
-    uint32_t rest_ms = 200;   ///< a device silent for this long counts as at rest, even if it did not report rest
+    double dead_zone = 0.05;  ///< deflections below this fraction count as none
+    uint32_t rest_ms = 200;   ///< a device that sends nothing for this long counts as at rest
 };
 
 struct HidProfile {

@@ -8,7 +8,7 @@ namespace {
 
 uint32_t raw_of(const HidField& field, std::span<const uint8_t> payload)
 {
-    uint64_t bits = 0;  // 64 bits, since a field of 32 bits may touch 5 bytes
+    uint64_t bits = 0;  // 64 bits, since a field of 32 bits that is not byte-aligned spans 5 bytes
     const size_t first = field.bit / 8, last = (field.bit + field.bits - 1) / 8;
     for (size_t byte = first; byte <= last; ++byte) bits |= uint64_t(payload[byte]) << (8 * (byte - first));
     return uint32_t((bits >> (field.bit % 8)) & ((uint64_t{1} << field.bits) - 1));
@@ -39,7 +39,7 @@ void put_value(const HidField& field, double value, std::span<uint8_t> payload)
     put_raw(field, uint32_t(int64_t(raw)), payload);
 }
 
-/// Returns the bytes after the id; empty if `report` is another report than expected.
+/// Returns the bytes after the id; empty if id or length of `report` differ from those of `expected`.
 std::span<const uint8_t> payload_of(const HidReport& expected, std::span<const uint8_t> report)
 {
     const size_t id_bytes = expected.id == 0 ? 0 : 1;
@@ -48,7 +48,7 @@ std::span<const uint8_t> payload_of(const HidReport& expected, std::span<const u
     return report.subspan(id_bytes);
 }
 
-/// Reads fields by quantity; fields that the report lacks get a default, or are absent.
+/// Reads fields by quantity. A field that the report lacks is replaced by a default, or returned as null.
 struct Reader {
     const HidReport& report;
     std::span<const uint8_t> payload;
@@ -74,9 +74,9 @@ glm::dquat rotation_of(const Reader& reader, const glm::dmat3& axes)
     using enum HidQuantity;
     const glm::dquat q(reader.value(rotation_w, 1.0), reader.value(rotation_x, 0.0), reader.value(rotation_y, 0.0),
                        reader.value(rotation_z, 0.0));
-    // A device that has not calibrated its angles yet sends zeros.
+    // A device that has not calibrated its angles yet sends a zero quaternion, which cannot be normalized.
     if (glm::dot(q, q) < 0.25) return {1.0, 0.0, 0.0, 0.0};
-    // A rotation axis is a pseudovector: a reflection also flips its sign.
+    // A rotation axis is a pseudovector: a reflection also flips the axis's sign.
     const glm::dvec3 axis = glm::determinant(axes) * (axes * glm::dvec3(q.x, q.y, q.z));
     return glm::normalize(glm::dquat(q.w, axis.x, axis.y, axis.z));
 }
@@ -93,7 +93,7 @@ std::optional<HidInput> decode(const HidProfile& profile, std::span<const uint8_
         if (reader.has(position_x)) input.position_m = profile.axes * reader.vector(position_x, position_y, position_z);
         if (reader.has(rotation_w)) input.rotation = rotation_of(reader, profile.axes);
         if (reader.has(rate_x)) input.rate = profile.axes * reader.vector(rate_x, rate_y, rate_z);
-        // An angular velocity is a pseudovector: a reflection also flips its sign.
+        // An angular velocity is a pseudovector: a reflection also flips the velocity's sign.
         if (reader.has(turn_x))
             input.turn_rate = glm::determinant(profile.axes) * (profile.axes * reader.vector(turn_x, turn_y, turn_z));
         input.buttons = reader.raw(buttons);
@@ -156,7 +156,7 @@ DeviceCaps decode_feature(const HidProfile& profile, std::span<const uint8_t> re
     caps.peak_force_n = std::clamp(reader.value(peak_force, caps.peak_force_n), 0.0, caps.peak_force_n);
     caps.continuous_force_n = std::min(caps.continuous_force_n, caps.peak_force_n);
     caps.latency_s = std::max(caps.latency_s, reader.value(latency, caps.latency_s));
-    // The report states full side lengths along the device's axes, centred; 0 means not stated.
+    // The report states full side lengths of a centred box along the device's axes; 0 means that none is stated.
     const glm::dvec3 side = glm::abs(profile.axes * glm::dvec3(reader.value(usable_x, 0.0), reader.value(usable_y, 0.0),
                                                                reader.value(usable_z, 0.0)));
     for (int i = 0; i < 3; ++i) {

@@ -14,8 +14,8 @@
 
 namespace shvr {
 
-/// The contents of an input report, in our axes; values it does not contain are null. Counters are raw: `Unwrapped`
-/// extends them.
+/// The contents of an input report, in the axes of `HapticDevice`; values that the report does not contain are null.
+/// Counters are raw: `Unwrapped` extends them.
 struct HidInput {
     std::optional<glm::dvec3> position_m;
     std::optional<glm::dquat> rotation;
@@ -24,11 +24,11 @@ struct HidInput {
     std::optional<bool> calibrated;
     std::optional<uint32_t> sequence, force_sequence, time;
 };
-/// Returns null if the report is not one of the profile's input reports: its id or length differs.
+/// Returns null if id and length of the report match none of the profile's input reports.
 std::optional<HidInput> decode(const HidProfile& profile, std::span<const uint8_t> report);
-/// Returns whether the profile says to ignore this kind of report.
+/// Returns whether the profile lists this kind of report among those to ignore.
 bool is_ignored(const HidProfile& profile, std::span<const uint8_t> report);
-/// Converts a deflection to a fraction of full speed; finite, length at most 1.
+/// Applies dead zone, gain and curve to a deflection. Returns the speed as a fraction of full speed, length at most 1.
 glm::dvec3 shaped(const HidRate& rate, const glm::dvec3& deflection);
 
 struct HidBytes {
@@ -36,16 +36,16 @@ struct HidBytes {
     size_t size = 0;
     std::span<const uint8_t> span() const { return {bytes.data(), size}; }
 };
-/// Returns the output report for a force in our axes, clamped to the profile's peak. If not enabled or not finite, the
-/// report has zero force and the enable flag off. Empty if the profile has no output report.
+/// Returns the output report for a force in the axes of `HapticDevice`, clamped to the profile's peak. The force is 0
+/// and the enable flag off if not `enabled` or if the force is not finite. Empty if the profile has no output report.
 HidBytes encode(const HidProfile& profile, const glm::dvec3& force_n, uint32_t sequence, bool enabled);
 
-/// Returns the profile's limits; where the device's feature report states a weaker force, a smaller workspace or a
-/// longer latency, that value replaces the profile's. Returns the profile's own if `report` is not its feature report.
+/// Returns the profile's limits, except where the device's feature report states a weaker force, a smaller workspace or
+/// a longer latency. Returns the profile's own limits if `report` is not the profile's feature report.
 DeviceCaps decode_feature(const HidProfile& profile, std::span<const uint8_t> report);
 
-/// Extends a counter of 1 to 32 bits past its overflows. A step of more than half its range counts as a step backwards,
-/// such as a restart.
+/// Extends a counter of 1 to 32 bits past its overflows. A step of more than half the counter's range counts as a step
+/// backwards, such as a restart.
 class Unwrapped {
 public:
     explicit Unwrapped(uint32_t bits) : mask_(bits >= 32 ? ~uint32_t{0} : (uint32_t{1} << bits) - 1) {}

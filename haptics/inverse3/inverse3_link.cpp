@@ -27,9 +27,9 @@ using std::chrono::milliseconds;
 using Event = WebSocketReader::Event;
 
 constexpr milliseconds RETRY_EVERY{20};
-constexpr milliseconds GIVE_UP{1000};  ///< time without an answer after which the connection is ended
-constexpr int LINK_PRIORITY = 81;      ///< higher than the servo's, since the thread runs briefly and then waits
-constexpr double PEAK_FORCE_N = 3.3;   ///< set by this program, not by the maker: untested on the device
+constexpr milliseconds GIVE_UP{1000};  ///< a connection without an answer for this long is closed
+constexpr int LINK_PRIORITY = 81;      ///< above the servo's priority, since the thread runs briefly and then waits
+constexpr double PEAK_FORCE_N = 3.3;   ///< a limit of this program, not of the maker: untested on the device
 constexpr double CONTINUOUS_FORCE_N = 0.88;
 constexpr double STIFFNESS_LIMIT = 250.0;  ///< N/m, for an arm of low friction and two ticks of delay
 
@@ -40,7 +40,7 @@ struct Reading {
 struct Command {
     glm::dvec3 force_n{0.0};
     uint32_t sequence = 0;
-    uint64_t interruptions = 0;  ///< number of interruptions known to the servo
+    uint64_t interruptions = 0;  ///< number of interruptions that the servo knew of when it wrote this force
 };
 
 struct Channels {
@@ -88,7 +88,7 @@ Channels connect(const Inverse3Options& options)
     return channels;
 }
 
-/// Returns a copy of the text that is never freed. Equal texts share a copy, so there is one per kind of failure.
+/// Returns a copy of `text` that is never freed. Equal texts share one copy, so there are few: one per kind of failure.
 const char* kept(const std::string& text)
 {
     static std::mutex mutex;
@@ -106,7 +106,7 @@ public:
           wake_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC))
     {
         if (wake_ < 0) fail("the Inverse3's thread cannot be woken; expected fewer open files");
-        options_.device_id = device_id_;  // after a loss, looks for the same device
+        options_.device_id = device_id_;  // after a loss, look for the same device again
         begin();
         thread_ = std::thread(&Link::run, this);
         ::pthread_setname_np(thread_.native_handle(), "inverse3");
@@ -126,7 +126,7 @@ public:
 
     DeviceCaps caps() const noexcept override
     {
-        // The box is centred on the workspace in the service's default mount; this program sets the force limits.
+        // The box is centred on the workspace in the service's default mount. The force limits are this program's own.
         const glm::dvec3 middle = from_inverse3({0.0, -0.12, 0.15});
         return {.usable_lower_m = middle - 0.08,
                 .usable_upper_m = middle + 0.08,
@@ -142,7 +142,7 @@ public:
     {
         const uint64_t connection = connection_, interruptions = interruptions_;
         if (connection == 0) return ReadResult::lost;
-        // After a force of zero, the servo must fade the force in again.
+        // An interruption set the force to zero. `lost` makes the servo fade the force in again instead of resuming it.
         if (std::exchange(interruptions_seen_, interruptions) != interruptions) return ReadResult::lost;
         if (!readings_.take() || readings_.value().connection != connection) return ReadResult::stale;
         state = readings_.value().state;
@@ -159,7 +159,7 @@ public:
     Inverse3Counts counts() const noexcept override { return {sent_, answered_, refused_, connections_}; }
 
 private:
-    /// One write to an eventfd that does not block.
+    /// Wakes the link's thread by a write to a non-blocking eventfd.
     void wake() noexcept
     {
         const uint64_t one = 1;
@@ -209,14 +209,14 @@ private:
         in_flight_ = 0;
         is_first_ = true;
         is_braked_ = is_unplugged_ = is_telling_ = false;  // a device that brakes locks itself
-        ++interruptions_;                                  // forces of the previous connection are not sent on this one
+        ++interruptions_;                                  // reject forces written for the previous connection
         last_sent_force_ = glm::dvec3(0.0);
         sent_at_ = write_at_ = SteadyClock::now();
         events_tried_ = SteadyClock::now();
         trouble_ = channels_.events ? "" : NO_EVENTS;
         connection_ = ++connections_;
     }
-    /// Connects to the event channel. States may wait meanwhile, since no force has a deadline now.
+    /// Connects to the event channel. May block: no force is in effect without that channel, so no state is urgent.
     void find_events()
     {
         std::string ignored;
@@ -225,7 +225,7 @@ private:
         if (channels_.events) trouble_ = "";
     }
 
-    /// Runs one iteration: waits, receives, sends due messages.
+    /// Runs one iteration of the thread's loop: waits, receives, and sends the messages that are due.
     void serve()
     {
         std::array<pollfd, 3> each{pollfd{wake_, POLLIN, 0}, pollfd{channels_.states->descriptor(), POLLIN, 0},
@@ -345,7 +345,7 @@ private:
                                !is_unwritten && commands_.value().interruptions == interruptions_ &&
                                std::isfinite(glm::length(wanted));
         const bool is_pulling = last_sent_force_ != glm::dvec3(0.0);
-        if (is_pulling && !may_force) {  // sent at once, even with a message in flight
+        if (is_pulling && !may_force) {  // zero is sent at once, even while a message is unanswered
             ++interruptions_;
             if (!send({}, commands_.value().sequence)) lose();
             return;
@@ -361,7 +361,7 @@ private:
     bool send(const glm::dvec3& force_n, uint32_t sequence)
     {
         text_.clear();
-        // + 0.0: avoids "-0" from the rotated axes of a zero force
+        // + 0.0 turns -0 into 0: rotating the axes of a zero force would otherwise print "-0"
         append_inverse3_command(text_, device_id_, to_inverse3(force_n) + 0.0, std::exchange(is_first_, false));
         if (!channels_.states->send_text(text_)) return false;
         has_command_ = false;
@@ -375,7 +375,7 @@ private:
     bool refuse(const char* wrong)
     {
         trouble_ = kept(sentence("the Inverse3's service sent what it must not: ", wrong));
-        ++refused_;  // stored last, so that an observer of the count also sees the reason
+        ++refused_;  // incremented last, so that a reader of the new count also sees the reason
         next_try_ = SteadyClock::now() + options_.hold;
         return false;
     }
@@ -398,14 +398,14 @@ private:
     std::atomic<bool> is_running_{true};
     std::atomic<uint64_t> connection_{0};  ///< 0: none
     std::atomic<uint64_t> connections_{0}, sent_{0}, answered_{0}, refused_{0};
-    std::atomic<uint64_t> interruptions_{0};  ///< how often a force was taken back
+    std::atomic<uint64_t> interruptions_{0};  ///< how often zero replaced the servo's force
     uint64_t interruptions_seen_ = 0;         ///< used by the servo only
     std::atomic<const char*> trouble_{""};
 
     // Used by the link's thread only.
     int in_flight_ = 0;
     bool is_first_ = true, has_command_ = false, is_braked_ = false, is_unplugged_ = false;
-    bool is_telling_ = false;  ///< `trouble_` describes an event; it is cleared when the event's hold ends
+    bool is_telling_ = false;  ///< `trouble_` describes an event; cleared when that event's hold time ends
     glm::dvec3 last_sent_force_{0.0};
     uint32_t last_sent_sequence_ = 0;
     SteadyClock::time_point sent_at_, write_at_, held_until_, next_try_, events_tried_;

@@ -27,8 +27,8 @@ struct Inverse3Options {
     std::string device_id;  ///< empty: the first one
     bool allow_force = false;
     bool realtime = true;                            ///< SCHED_FIFO for the link's thread, if the system allows it
-    std::chrono::milliseconds connect_timeout{300};  ///< for each connection and the first inventory
-    std::chrono::milliseconds write_timeout{12};     ///< so short that force is zero within 20 ms in total
+    std::chrono::milliseconds connect_timeout{300};  ///< timeout of each connection and of the first inventory
+    std::chrono::milliseconds write_timeout{12};     ///< short enough for zero force within 20 ms in total
     std::chrono::milliseconds answer_timeout{12};
     std::chrono::milliseconds keep_alive{10};  ///< interval of messages while the servo does not write
     std::chrono::milliseconds hold{1000};      ///< duration of zero force after a stall or a refused message

@@ -14,7 +14,7 @@ constexpr int MAX_DEPTH = 24;
 constexpr size_t MAX_ID = 64;
 constexpr double MAX_PLACE_M = 10.0;  ///< no device reaches farther
 
-/// Parses JSON from front to back. The first error is kept, and nothing is parsed after it.
+/// Parses JSON in one pass. After the first error, which is kept, nothing more is parsed.
 class Scanner {
 public:
     explicit Scanner(std::string_view text) : rest_(text) {}
@@ -25,7 +25,7 @@ public:
         return false;
     }
 
-    /// Calls `member(key)` for each member, which must read its value.
+    /// Calls `member(key)` for each member of an object; `member` must read the value.
     template <class Member>
     bool object(const Member& member)
     {
@@ -35,13 +35,13 @@ public:
             return member(key);
         });
     }
-    /// Calls `element()` for each element, which must read it.
+    /// Calls `element()` for each element of an array; `element` must read the element.
     template <class Element>
     bool array(const Element& element)
     {
         return nested('[', ']', element);
     }
-    /// Reads the raw string: escapes are not decoded.
+    /// Reads a string without decoding its escapes.
     bool string(std::string_view& text)
     {
         if (!sign('"')) return false;
@@ -149,7 +149,7 @@ bool is_id(std::string_view text)
     });
 }
 
-/// Reads one key per component; all must be present.
+/// Reads an object with one number per character of `keys`, such as "xyz"; all of them must be present.
 template <size_t SIZE>
 bool read_components(Scanner& scanner, std::string_view keys, std::array<double, SIZE>& values)
 {
@@ -248,7 +248,7 @@ const char* read_inverse3_state(std::string_view text, std::string_view device_i
         if (key == "inverse3") return scanner.array([&] { return read_device(scanner, device_id, state); });
         const bool is_grip = key == "wireless_verse_grip" || key == "verse_grip";
         if (!is_grip) return scanner.skip();
-        // The first grip is the one in the hand.
+        // A state may list several grips; the first is the one in the user's hand. The others are skipped.
         return scanner.array(
             [&] { return std::exchange(has_grip, true) ? scanner.skip() : read_grip(scanner, state); });
     });

@@ -32,8 +32,8 @@ struct Inverse3State {
     glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
     uint32_t buttons = 0;  ///< buttons of the grip: bit 0 is a, bit 1 is b
 };
-/// Reads an inventory or a state into `state`: the device with the id `device_id`, or the first one if that is empty.
-/// Returns null, or the message's defect; `state` is then unspecified.
+/// Reads an inventory or a state into `state`: the device with the id `device_id`, or the first device if the id is
+/// empty. Returns null, or a description of the message's defect; `state` is then unspecified.
 const char* read_inverse3_state(std::string_view text, std::string_view device_id, Inverse3State& state);
 
 enum class Inverse3Event : uint8_t {
@@ -49,11 +49,11 @@ struct Inverse3Notice {
     Inverse3Event event = Inverse3Event::other;
     std::string device_id;  ///< empty: not stated
 };
-/// Reads a message of the event channel; returns null, or the message's defect.
+/// Reads a message of the event channel; returns null, or a description of the message's defect.
 const char* read_inverse3_notice(std::string_view text, Inverse3Notice& notice);
 
-/// Appends the message that sets a force, in digits that parse back bit for bit. The first message of a connection also
-/// names the program. `force_n` must be finite.
+/// Appends the message that sets a force, with enough digits to parse back to the same bits. The first message of a
+/// connection also names the program. `force_n` must be finite.
 void append_inverse3_command(std::string& text, std::string_view device_id, const glm::dvec3& force_n, bool is_first);
 
 }  // namespace shvr

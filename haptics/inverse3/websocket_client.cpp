@@ -19,9 +19,9 @@ namespace {
 using SteadyClock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr int MAX_RECEIVES = 4;  ///< receives in a row, of 16 KiB each: a flood of messages must not block sending
+constexpr int MAX_RECEIVES = 4;  ///< 16 KiB per receive; bounded, so that a flood of messages cannot block sending
 
-/// Returns false once the time is up, even if data are ready: bytes that keep coming must not extend a deadline.
+/// Returns false after `until`, even if data are ready: a peer that keeps sending bytes must not extend a deadline.
 bool wait_for(int descriptor, short what, SteadyClock::time_point until)
 {
     for (;;) {
@@ -103,7 +103,7 @@ bool WebSocketClient::shake_hands(uint16_t port, SteadyClock::time_point until, 
 
 bool WebSocketClient::send_bytes(std::string_view bytes)
 {
-    // A message in flight is a few hundred bytes: a full send buffer means that the other side has stopped reading.
+    // An unsent message has a few hundred bytes at most, so a full send buffer means that the peer has stopped reading.
     ssize_t count = -1;
     do count = ::send(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
     while (count < 0 && errno == EINTR);
@@ -142,7 +142,7 @@ WebSocketReader::Event WebSocketClient::next()
     std::optional<std::string> ping;
     WebSocketReader::Event event = reader_.next();
     for (; event == WebSocketReader::Event::ping; event = reader_.next()) ping = reader_.payload();
-    // A pong that was cut off would garble all later frames.
+    // A partly sent pong would garble all later frames, so the connection is closed.
     if (ping && !send_frame(WebSocketOpcode::pong, *ping)) return WebSocketReader::Event::close;
     return event;
 }

@@ -1,6 +1,6 @@
 #pragma once
-// A WebSocket to a port of the local machine. Connecting blocks, at most as long as specified; afterwards only `wait`
-// blocks. A poll on `descriptor()` shows when there is something to receive. One thread at a time.
+// A WebSocket to a port of the local machine. `connect` blocks for a limited time; after it, only `wait` blocks. A poll
+// on `descriptor()` shows when data can be received. One thread at a time.
 
 #include <chrono>
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace shvr {
 
 class WebSocketClient {
 public:
-    /// Returns null if nothing listens there, or if the listener is unusable, in which case `trouble` says why.
+    /// Returns null if nothing listens on the port, or if the listener is unusable; `trouble` then says why.
     static std::unique_ptr<WebSocketClient> connect(uint16_t port, std::chrono::milliseconds most,
                                                     std::string& trouble);
     ~WebSocketClient();
@@ -22,16 +22,16 @@ public:
     WebSocketClient& operator=(const WebSocketClient&) = delete;
 
     int descriptor() const { return descriptor_; }
-    /// Returns false if the other side is gone or does not read.
+    /// Returns false if the peer is gone or has stopped reading.
     bool send_text(std::string_view text);
-    /// Receives pending data; returns false if the connection has ended. Complete messages are still available through
-    /// `next()`.
+    /// Receives pending data; returns false if the connection has ended. Messages that were complete by then remain
+    /// available through `next()`.
     bool receive();
     /// Returns the next message. Answers pings, several with one pong; returns `close` if a pong cannot be sent.
     WebSocketReader::Event next();
     std::string_view payload() const { return reader_.payload(); }
     const char* trouble() const { return reader_.trouble(); }
-    /// Waits until there is something to receive; returns false once the time is up, even if there is something.
+    /// Waits until data can be received. Returns false after `until`, even if data are ready by then.
     bool wait(std::chrono::steady_clock::time_point until) const;
     /// Announces that no more will be sent.
     void close();
@@ -43,7 +43,7 @@ private:
     bool send_frame(WebSocketOpcode opcode, std::string_view payload);
 
     int descriptor_;
-    uint32_t mask_ = 0x9e3779b9;  ///< changes with each frame; masks protect proxies, and there are none here
+    uint32_t mask_ = 0x9e3779b9;  ///< changes with each frame; not random, since masks only protect proxies
     std::string frame_;
     WebSocketReader reader_;
 };

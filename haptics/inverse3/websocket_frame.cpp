@@ -14,8 +14,8 @@ constexpr size_t MAX_HEADER = 8 << 10;
 constexpr uint8_t FINAL = 0x80, RESERVED = 0x70, MASKED = 0x80;
 constexpr size_t MAX_CONTROL_PAYLOAD = 125;
 
-// ---- SHA-1 and base64, only for the handshake: it proves that the other side speaks WebSocket, and keeps no secret
-// --
+// ---- SHA-1 and base64, only for the handshake: they show that the peer speaks WebSocket, and protect
+// no secret -------------------------------------------------------------------------------------------
 
 using Digest = std::array<uint32_t, 5>;
 

@@ -1,6 +1,6 @@
 #pragma once
-// The part of WebSockets (RFC 6455) needed by a client on the local machine: the handshake's texts, and frames as
-// bytes. Pure; any thread.
+// The part of the WebSocket protocol (RFC 6455) needed by a client on the local machine: the texts of the handshake,
+// and frames as bytes. Pure; any thread.
 
 #include <array>
 #include <cstddef>
@@ -23,14 +23,14 @@ std::string websocket_request(uint16_t port, std::string_view key);
 
 struct WebSocketAnswer {
     bool is_complete = false;       ///< the header has ended
-    size_t size = 0;                ///< size of the header in bytes; frames follow it
-    const char* trouble = nullptr;  ///< reason why the other side is not a WebSocket; null: it is one
+    size_t size = 0;                ///< size of the header in bytes; the first frame follows the header
+    const char* trouble = nullptr;  ///< reason why the peer is no WebSocket server; null: it is one
 };
 WebSocketAnswer check_websocket_answer(std::string_view received, std::string_view key);
 
 // ---- Frames ----
 
-inline constexpr size_t MAX_WEBSOCKET_MESSAGE = 256 << 10;  ///< an inventory of several devices is about 10 KiB
+inline constexpr size_t MAX_WEBSOCKET_MESSAGE = 256 << 10;  ///< limit; an inventory of several devices has about 10 KiB
 
 /// Appends one whole frame, masked as RFC 6455 requires of clients.
 void append_websocket_frame(std::string& bytes, WebSocketOpcode opcode, std::string_view payload, uint32_t mask);
@@ -46,7 +46,7 @@ public:
     enum class Event : uint8_t {
         none,     ///< more bytes are needed
         text,     ///< a whole message
-        ping,     ///< to be answered with a pong of the same payload
+        ping,     ///< the caller must answer with a pong of the same payload
         close,    ///< the other side ends the connection
         refused,  ///< protocol violation: `trouble()` says why; nothing is read from then on
     };

@@ -1,6 +1,6 @@
 #pragma once
-// The library of 3D Systems' OpenHaptics (libHD.so), loaded at run time: neither its header nor the library is needed
-// to build SHVR, and neither is shipped. Prototypes and values are written from its public documentation. Used on
+// The library of 3D Systems' OpenHaptics (libHD.so), loaded at run time: SHVR neither ships the library or its header
+// nor needs them to be built. Prototypes and values are written from the public documentation of OpenHaptics. Used on
 // Linux, where OpenHaptics 3.4 exists.
 
 #include <cstdint>
@@ -28,7 +28,7 @@ inline constexpr uint32_t USABLE_WORKSPACE = 0x2551;       ///< mm: lower x, y, 
 inline constexpr uint32_t NOMINAL_MAX_STIFFNESS = 0x2602;  ///< 0 ... 1
 inline constexpr uint32_t NOMINAL_MAX_FORCE = 0x2603;      ///< N
 inline constexpr uint32_t NOMINAL_MAX_CONTINUOUS_FORCE = 0x2604;
-inline constexpr uint32_t MOTOR_TEMPERATURE = 0x2605;  ///< one fraction per motor; 1 is too hot
+inline constexpr uint32_t MOTOR_TEMPERATURE = 0x2605;  ///< one fraction per motor; at 1 a motor is too hot
 inline constexpr uint32_t CURRENT_FORCE = 0x2700;      ///< N
 inline constexpr uint32_t FORCE_OUTPUT = 0x4000;
 
@@ -72,8 +72,8 @@ struct HdLibrary {
     void (*update_calibration)(uint32_t style) = nullptr;
 };
 
-/// Returns null if there is no such library. Fails if the library lacks a function. A loaded library stays loaded until
-/// the program ends: the driver does not survive being loaded twice.
+/// Returns null if the library is not installed. Fails if the library lacks a function. A loaded library stays loaded
+/// until the program ends, since the driver does not survive being loaded twice.
 const HdLibrary* load_hd_library(const std::string& name);
 
 }  // namespace shvr

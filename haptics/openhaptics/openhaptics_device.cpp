@@ -16,7 +16,7 @@ namespace {
 using SteadyClock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds WRITE_TIMEOUT{18};
-constexpr std::chrono::milliseconds HOLD{100};   ///< hold time after an error, long enough for the servo to notice
+constexpr std::chrono::milliseconds HOLD{100};   ///< time without force after an error; the servo notices within it
 constexpr double TOO_WARM = 0.95;                ///< fraction of the motors' limit at which force ends, before the
                                                  ///< driver switches off by itself
 constexpr double WARM_AGAIN = 0.8;               ///< below it force is enabled again
@@ -158,7 +158,7 @@ private:
         caps_.senses_rotation = true;
         caps_.outputs_force = allow_force;
         caps_.tells_force_sequence = true;
-        hd_.get_error();  // values that a device does not report are not an error
+        hd_.get_error();  // discard the error: the device may not report every value
     }
 
     // ---- The driver's thread ----

@@ -1,10 +1,10 @@
 #pragma once
-// 3D Systems' Touch and related devices through their maker's driver. The driver's own scheduler calls us a thousand
-// times a second in its own thread; the servo exchanges latest values with it and never waits:
+// 3D Systems' Touch and related devices through their maker's driver. The driver's scheduler calls this code a thousand
+// times a second on a thread of its own; the servo exchanges latest values with that thread and never waits:
 //
 //   servo --Latest--> the driver's thread --Latest--> servo
 //
-// The driver's thread sets a force of zero when the servo has not written for 20 ms, when a motor is too warm, and
+// The driver's thread sets the force to zero when the servo has not written for 20 ms, when a motor is too warm, and
 // after an error; a fault or a lost connection ends the device. While the driver runs, the HID node of a Touch is gone:
 // this back end and `haptics/hid` exclude each other for one device.
 
@@ -20,14 +20,14 @@ struct OpenHapticsOptions {
     std::string library = "libHD.so";
     std::string device;  ///< name given in the driver's configuration; empty: the default one
     bool allow_force = false;
-    bool may_calibrate = true;  ///< only calibration that needs no user action
+    bool may_calibrate = true;  ///< calibrates only in ways that need no user action
 };
 
 class OpenHaptics : public HapticDevice {
 public:
     virtual std::string model() const = 0;
     virtual std::string serial() const = 0;
-    /// Returns the warmest motor's temperature as a fraction of the temperature at which it must rest; any thread.
+    /// Returns the warmest motor's temperature as a fraction of that at which the motor must rest. Any thread.
     virtual double motor_temperature() const noexcept = 0;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// Relevance computed without a window, with the delay that it would have in a window: requested when the mirror would
-// (engine/touch/region_wish.h) and felt once the answer would have arrived. For replays and tests. One thread.
+// Computes relevance without a window, but with the window's delay: requested when the window's mirror would request it
+// (engine/touch/region_wish.h), and felt once the answer would have arrived. For replays and tests. One thread.
 
 #include <functional>
 #include <memory>
@@ -16,13 +16,13 @@ using MakeRelevance = std::function<void(const RegionWish& wish, double threshol
 
 class LateRelevance {
 public:
-    /// `every`: number of calls between updates, which are then felt at once; 0: updates follow the mirror's rule.
+    /// `every`: number of calls between updates, each felt without delay; 0: updates follow the window's rule.
     LateRelevance(MakeRelevance make, double latency_s, uint32_t every = 0);
     /// Returns the relevance felt now. Call once per tick. `velocity`: the probe's, physical units per second.
     const RelevancePatch& around(const glm::dvec3& velocity, const glm::dvec3& point, const ForceSettings& settings,
                                  double threshold, uint64_t now_ns);
     uint64_t made() const { return made_; }
-    /// Call when another servo takes over: that servo knows nothing yet.
+    /// Call when another servo takes over: a new servo has no relevance yet.
     void swap() { patch_->sequence = next_->sequence = 0; }
 
 private:

@@ -43,7 +43,7 @@ void ModelledTouch::move_on(double seconds, const glm::dvec3& wish_m, const glm:
         seconds -= dt;
         const glm::dvec3 pull = force_n + model_.hand_stiffness * (wish_m - position_m_);
         velocity_ = (velocity_ + pull * (dt / mass)) / (1.0 + damping * dt / mass);
-        // Friction can stop the motion within the step, but not reverse it.
+        // Friction can stop the arm within the step, but cannot reverse its motion.
         const double speed = glm::length(velocity_), taken = model_.coulomb_n * dt / mass;
         velocity_ = speed > taken ? velocity_ * (1.0 - taken / speed) : glm::dvec3(0.0);
         position_m_ += velocity_ * dt;

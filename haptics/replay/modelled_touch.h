@@ -31,7 +31,7 @@ struct TouchModel {
     double count_m = 55e-6;  ///< 0: not rounded
     double peak_n = 3.3;
     int delay_ticks = 2;       ///< 0 ... 8
-    double jitter_s = 0.0005;  ///< at most half a tick, either way
+    double jitter_s = 0.0005;  ///< jitter in either direction, at most half a tick
     double tick_s = 0.001;
     double hand_kg = 0.1;
     double hand_stiffness = 150.0;  ///< N/m; 0: not held
@@ -43,14 +43,14 @@ class ModelledTouch : public HapticDevice {
 public:
     explicit ModelledTouch(const TouchModel& model = {});
     Latest<HandWish>& wish() { return wish_; }
-    /// Gives the arm a velocity, to throw it at objects.
+    /// Sets the arm's velocity, for tests that throw the arm at objects.
     void set_velocity(const glm::dvec3& velocity) { velocity_ = velocity; }
     const glm::dvec3& true_position_m() const { return position_m_; }
     /// Work done by the device's force on hand and arm, in J: the energy they gained from it.
     double work_j() const { return work_j_; }
 
     DeviceCaps caps() const noexcept override;
-    /// Advances by one tick. The result is always fresh.
+    /// Advances the model by one tick. The result is always `fresh`.
     ReadResult read(DeviceState& state) noexcept override;
     bool write(const glm::dvec3& force_n, uint32_t sequence) noexcept override;
 

@@ -41,7 +41,7 @@ ForceSettings chosen(const TraceSettings& settings, const ReplayOptions& options
     return force;
 }
 
-/// The device of a replay: either the trace's answers, or a modelled device drawn along the trace's positions.
+/// The device of a replay: returns the trace's answers, or those of a modelled device led along the trace's path.
 class Player {
 public:
     Player(const Trace& trace, const ReplayOptions& options) : trace_(trace)
@@ -93,7 +93,7 @@ private:
     glm::dvec3 wish_m_{0.0};
 };
 
-/// The relevance that the servo had, tick by tick.
+/// Supplies the relevance that the servo had in the recorded session, tick by tick.
 class RecordedRelevance {
 public:
     explicit RecordedRelevance(const Trace& trace)
@@ -123,7 +123,7 @@ class Tally {
 public:
     explicit Tally(ReplayResult& result) : result_(result) { result_.hash = FNV_BASIS; }
 
-    /// Switches to another device, whose first force does not follow an earlier one.
+    /// Switches to another device: its first force is not compared or combined with a force of the previous device.
     void swap()
     {
         ++result_.swaps;

@@ -24,10 +24,10 @@ struct ReplayOptions {
     std::optional<double> stiffness, damping;
     std::optional<double> probe_radius;  ///< physical units; recorded relevance may not cover a larger ball
     std::optional<double> surface_share, strength;
-    /// Device model that a modelled hand moves along the trace; null: the device's answers are those of the trace.
+    /// Device model that a modelled hand leads along the trace's path; null: the device answers as in the trace.
     std::optional<TouchModel> touch;
     bool relevance_anew = false;  ///< recomputes relevance even if the trace contains it
-    /// Computed relevance is requested as in the window (engine/touch/region_wish.h) and felt after this delay.
+    /// Recomputed relevance is requested as in the window (engine/touch/region_wish.h) and felt after this delay.
     double relevance_latency_s = WINDOW_LATENCY_S;
     uint32_t relevance_every = 0;  ///< ticks between updates of relevance, each felt at once; 0: as in the window
     std::function<void(const ReplayedTick& tick)> note_tick{};  ///< called after each tick, in order
@@ -38,17 +38,17 @@ struct ReplayResult {
     uint64_t late = 0;  ///< ticks whose `now` was more than one period late
     double largest_force_n = 0.0;
     double largest_step_n = 0.0;  ///< between ticks
-    double energy_j = 0.0;        ///< work of the forces along the hand's path: above 0, the hand was driven
+    double energy_j = 0.0;        ///< work of the forces along the hand's path; positive if the forces drove the hand
     double proxy_rms = 0.0;       ///< distance between probe and proxy in contact, physical units
     uint64_t contact_ticks = 0, patches = 0;
     uint32_t objects = 0, swaps = 0;    ///< number of objects touched on the last device; number of device changes
     bool is_recorded = false;           ///< the relevance was read from the trace; false: it was computed
     uint64_t hash = 0;                  ///< FNV-1a of all forces' bits
-    uint64_t told = 0, told_equal = 0;  ///< ticks whose force is in the trace; of these, ticks replayed to equal bits
+    uint64_t told = 0, told_equal = 0;  ///< ticks with a force in the trace; those replayed to equal bits
     std::vector<uint64_t> tick_ns;      ///< time that each step() took on the real clock
     std::vector<ForceStep> steps;       ///< if requested
 };
-/// Whether the trace's relevance is used. A modelled hand cannot use it: its path differs, so its relevance is unknown.
+/// Returns whether the trace's relevance is used: not with a modelled hand, whose path leaves the recorded relevance.
 bool replays_relevance(const Trace& trace, const ReplayOptions& options);
 /// If the trace's relevance is not used, calls `make_relevance` instead, also when the threshold changes; fails if
 /// `make_relevance` is empty.

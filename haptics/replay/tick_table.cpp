@@ -51,7 +51,7 @@ std::string tick_table_head(const std::string& unit)
 std::string tick_table_line(const ReplayedTick& replayed, uint64_t tick, uint64_t begin_ns)
 {
     const ForceStep& step = replayed.step;
-    // The clock of a trace may go back.
+    // Signed, since the clock of a trace may go backwards.
     const double time_s = 1e-9 * double(int64_t(replayed.now_ns - begin_ns));
     std::string line = std::to_string(tick) + ',' + digits_of(time_s) + ',';
     line.append(TRACE_READS[size_t(replayed.read)]).append(",").append(std::to_string(replayed.device.buttons));

@@ -18,13 +18,13 @@ namespace shvr {
 /// `time_s` counts from the first tick. `hand` is the device's position, in its own frame like the force. Positions
 /// that are not finite are empty. `flags` are the words of ForceFlag, joined by "|".
 std::string tick_table_head(const std::string& unit);
-/// One line, with line break. `tick` counts from 0; `begin_ns` is the first tick's clock.
+/// Returns one line, with line break. `tick` counts from 0; `begin_ns` is the first tick's clock.
 std::string tick_table_line(const ReplayedTick& replayed, uint64_t tick, uint64_t begin_ns);
 
 /// "engaging|clamped"; empty for no flag.
 std::string flag_words(uint32_t flags);
 
-/// Writes the table to a file while a trace is replayed. Without `commit` the file stays as it was.
+/// Writes the table to a file while a trace is replayed. The file is replaced only by `commit`.
 class TickTable {
 public:
     TickTable(const std::filesystem::path& path, const std::string& unit);

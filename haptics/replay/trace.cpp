@@ -181,7 +181,7 @@ bool read_head(const JsonNode& node, Trace& trace)
     return number == "3";
 }
 
-/// Reads lines after the head. Runs are decoded here, so that errors name their line.
+/// Reads the lines after the head. Runs of relevance are decoded here, so that error messages can name their line.
 class LineReader {
 public:
     explicit LineReader(Trace& trace) : trace_(trace) {}
@@ -221,7 +221,7 @@ private:
         const bool is_other = !trace_.swaps.empty() && trace_.swaps.back() == trace_.ticks.size();
         trace_.ticks.push_back(
             read_tick(node, trace_.ticks.empty() ? nullptr : &trace_.ticks.back(), 1'000'000'000 / trace_.rate_hz));
-        // The first tick of another device has no relevance unless it states some.
+        // The first tick of another device has no relevance, unless its line states a relevance time.
         if (is_other && !node["relevance_time"].exists()) trace_.ticks.back().relevance_time_ns = 0;
     }
     void swap_device()

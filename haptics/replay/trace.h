@@ -15,7 +15,7 @@
 
 namespace shvr {
 
-/// The user's settings from a tick on. The threshold is for the code that computes the relevance.
+/// The user's settings from a tick on. The threshold is for code that recomputes the relevance.
 struct TraceSettings {
     ForceSettings force;
     double threshold = 0.0;  ///< intensity
@@ -32,7 +32,7 @@ struct TraceTick {
                                         ///< none
 };
 
-/// Limits of the device from a tick on, after a change.
+/// The device's limits from a tick on, after they changed.
 struct TraceCaps {
     DeviceCaps caps;
     size_t from_tick = 0;
@@ -47,12 +47,12 @@ struct Trace {
     /// has no force and no object, and feels nothing before the next relevance.
     std::vector<size_t> swaps;
     std::vector<TraceSettings> settings;  ///< sorted by tick; the first one applies from the start
-    /// Whether the trace contains the relevance that the servo used: `relevance`, sorted by tick; before its first
-    /// entry, there was none. If false, the replaying code computes relevance.
+    /// Whether the trace contains the relevance that the servo used: `relevance`, sorted by tick, none before the first
+    /// entry. If false, the code that replays the trace recomputes relevance.
     bool holds_relevance = false;
     std::vector<TraceRelevance> relevance;
-    /// Whether computed relevance is limited to the voxels that the session's settings show. False in traces of older
-    /// versions, which felt all voxels.
+    /// Whether recomputed relevance is limited to the voxels that the session's settings show. False in traces of older
+    /// versions, in which hidden voxels were felt, too.
     bool feels_seen = false;
     std::vector<TraceTick> ticks;
 };
@@ -61,7 +61,7 @@ inline constexpr std::string_view TRACE_READS[] = {"fresh", "stale", "lost", "ma
 inline constexpr int64_t MAX_TRACE_BYTES = int64_t{1} << 30;
 inline constexpr size_t MAX_TRACE_TICKS = 4'000'000;  ///< more than an hour
 
-/// `origin` names the text in error messages; each is a sentence with line, key, value and the expectation.
+/// `origin` names the text in error messages: one sentence with line, key, value found and value expected.
 Trace parse_trace(const std::string& text, const std::string& origin);
 Trace read_trace(const std::filesystem::path& file);
 std::string text_of(const Trace& trace);

@@ -10,7 +10,7 @@ namespace {
 constexpr std::string_view DIGITS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
 constexpr uint32_t MORE = 32;
 
-/// Returns the bits of `before` at the voxels of a word that starts at `first_voxel`.
+/// Returns the bits of `before` at the 32 voxels of the word that starts at `first_voxel`.
 uint32_t word_before(const RelevancePatch& before, int32_t level, const glm::ivec3& first_voxel)
 {
     if (before.sequence == 0 || before.level != level) return 0;
@@ -23,7 +23,7 @@ uint32_t word_before(const RelevancePatch& before, int32_t level, const glm::ive
     return shift == 0 ? word(w) : word(w) >> shift | word(w + 1) << (32 - shift);
 }
 
-/// Calls `each(word, bits of before)` in the order of the words.
+/// Calls `each(word, bits of before)` for every word of `patch`, in the order of storage.
 template <class Patch, class Each>
 void for_words(Patch& patch, const RelevancePatch& before, const Each& each)
 {
@@ -40,7 +40,7 @@ void put_length(uint32_t length, std::string& runs)
     runs += DIGITS[length];
 }
 
-/// Parses the next length. Returns false at the end, on other characters, and if the length has too many digits.
+/// Parses the next run length. Returns false at the end, on other characters, and if the length has too many digits.
 bool take_length(std::string_view& runs, uint32_t& length)
 {
     length = 0;
