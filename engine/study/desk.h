@@ -1,9 +1,9 @@
 #pragma once
-// An annotator's place of work, without a window: a modelled Touch in a modelled hand, the servo's step a thousand
-// times a second with relevance as late as in a window, the work with its history, and a clock. Tools act where the
-// product's do: in the middle of what is touched or, without contact, at the probe.
+// An annotator's workplace without a window: a modelled Touch in a modelled hand, the servo loop at 1 kHz with
+// relevance as late as in a window, the annotation with its undo history, and a clock. Tools act where the product's
+// do: in the middle of the touched object or, without contact, at the probe.
 //
-// Time in which the hand does nothing (`spend`) costs time, but no ticks. Equal seeds give equal bits. One thread.
+// `spend` advances the clock without simulating ticks, while the hand rests. Equal seeds give equal bits. One thread.
 
 #include <memory>
 #include <optional>
@@ -19,7 +19,7 @@
 
 namespace shvr {
 
-/// A task ends after ten minutes (thesis, chapter 6).
+/// The time limit of a task: ten minutes (thesis, chapter 6).
 inline constexpr double MAX_STUDY_S = 600.0;
 inline constexpr double STUDY_TICK_S = 0.001;
 
@@ -38,29 +38,29 @@ public:
     bool is_over() const { return seconds_ >= MAX_STUDY_S; }
     void spend(double seconds) { seconds_ += seconds; }
 
-    /// Places the hand, which did not feel anything on its way; force fades in again. Voxels.
+    /// Places the hand at a voxel position without feeling anything on the way; the force fades in again.
     void place(const glm::dvec3& voxel);
-    /// The direction in which a surface lets go.
+    /// Sets the direction to the eye, in which a surface releases the probe.
     void look_from(const glm::dvec3& to_eye) { force_.to_camera = to_eye; }
-    /// The hand aims at a place for a tick, that of its stray included. `speed`: of the place, voxels per second.
-    /// `acts`: a tool acts at the end of the tick, so its place is found.
+    /// Simulates a tick in which the hand aims at `aim`, and strays from it. `speed`: of the aimed place, voxels per
+    /// second. `acts`: whether a tool acts at the end of the tick, so that the tool's place is computed.
     const ForceStep& tick(const glm::dvec3& aim, double speed, bool acts = false);
     const ForceStep& step() const { return step_; }
-    /// Where a tool acts after a tick with `acts`, and where the probe is drawn after others.
+    /// Where a tool acts, after a tick with `acts`; after other ticks, where the probe is drawn.
     glm::dvec3 tool() const { return step_.in_contact ? step_.middle : step_.probe; }
     bool feels() const { return force_.assistance && step_.in_contact; }
 
     double probe_radius() const { return force_.probe_radius; }
-    /// Runs an operation of the trace; false if it is impossible, as when nothing is near enough to be selected.
+    /// Runs an operation on the trace. Returns false if it is impossible, as when no node is near enough to select.
     bool edit_trace(const TraceOp& op);
-    /// Paints a stroke of the probe's ball as one command. Returns the number of voxels that changed.
+    /// Paints with the probe's ball along a path, as one command. Returns the number of voxels that changed.
     int64_t paint(std::vector<glm::dvec3> path, double threshold);
     void undo();
     const Document& document() const { return work_.document(); }
 
     uint32_t presses() const { return presses_; }
     uint32_t undos() const { return undos_; }
-    /// Writes time, presses, undos, contact, energy and forces.
+    /// Writes the outcomes to the row: time, presses, undos, contact, energy and forces.
     void put_outcomes(StudyRow& row) const;
 
 private:

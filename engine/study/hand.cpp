@@ -24,7 +24,7 @@ constexpr HandTrait TRAITS[] = {
     {"speed", "m/s", &HandTraits::speed_m_per_s, "tools/make_stylus_path"},
 };
 
-constexpr double MOTION_S = 0.3;  ///< time in which a hand that stops becomes steady; a guess
+constexpr double MOTION_S = 0.3;  ///< time constant with which a hand that stops moving becomes steady; a guess
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// How a simulated annotator paints: strokes along each segment of the plan, until it looks painted.
+// How a simulated annotator paints: follows each segment of the plan with strokes until the segment looks painted.
 
 #include <algorithm>
 #include <cmath>
@@ -9,13 +9,13 @@ namespace shvr {
 
 namespace {
 
-constexpr double GLANCE_M = 0.006;        ///< the eye checks the course that often
-constexpr double STROKE_M_PER_S = 0.008;  ///< slower than a reach: the probe is watched
-constexpr int TOOL_TICKS = 16;            ///< a window extends a stroke once a picture, at 60 a second
+constexpr double GLANCE_M = 0.006;        ///< distance after which the eye checks the course again
+constexpr double STROKE_M_PER_S = 0.008;  ///< slower than a reach, since the eye follows the probe
+constexpr int TOOL_TICKS = 16;            ///< ticks per frame: a window extends a stroke at 60 frames a second
 constexpr int STROKES = 3;                ///< at most, from one view
-constexpr double LEFT_UNPAINTED = 0.06;   ///< share of a visible surface that is accepted
-constexpr double EARLY = 0.7;             ///< share of a segment after which a stroke stops early
-constexpr double BACK_CHECKED = 0.5;      ///< share of segments whose back a careful annotator looks at
+constexpr double LEFT_UNPAINTED = 0.06;   ///< share of the visible surface that a careful annotator leaves unpainted
+constexpr double EARLY = 0.7;             ///< share of a segment that is painted if painting stops early
+constexpr double BACK_CHECKED = 0.5;      ///< share of segments whose back an average annotator checks
 
 class PaintingSession final : public StudySession {
 public:
@@ -56,7 +56,7 @@ private:
         }
     }
 
-    /// Looks from behind, and paints what is unpainted there.
+    /// Looks at the segment from behind, and paints the parts that are unpainted there.
     void check_back(const std::vector<glm::dvec3>& course)
     {
         const glm::dvec3 front = view().to_eye;
@@ -74,7 +74,7 @@ private:
         if (unpainted_share(course) > LEFT_UNPAINTED * input_.skill.carelessness) paint_visible(course, false);
     }
 
-    /// Follows the course as it is seen, with the button down.
+    /// Moves the probe along the course, as the eye locates it, with the button pressed.
     void stroke(const std::vector<glm::dvec3>& course, double threshold)
     {
         const glm::dvec3 begin = seen(course.front());
@@ -97,11 +97,11 @@ private:
         desk_.paint(std::move(path), threshold);
     }
 
-    /// Calls `visit(place, is_painted)` for places on the surface of the segment that the view shows.
+    /// Calls `visit(place, is_painted)` for places on the part of the segment's surface that the view shows.
     template <class Visit>
     void each_visible_place(std::span<const glm::dvec3> course, const Visit& visit) const
     {
-        constexpr double DEPTH = 0.7;  // of the radius: places on the surface itself may lie outside it
+        constexpr double DEPTH = 0.7;  // of the radius, since points exactly on the surface may lie outside the vein
         const double radius = DEPTH * scene().vein_radius();
         for (const glm::dvec3& at : course)
             for (const glm::dvec3& out : {view().to_eye, view().right, -view().right, view().up(), -view().up()}) {
@@ -118,7 +118,7 @@ private:
         each_visible_place(course, [&](const glm::dvec3&, bool is_painted) { ++places, unpainted += !is_painted; });
         return places > 0.0 ? unpainted / places : 0.0;
     }
-    /// From the first place that looks unpainted to the last one; at least two places.
+    /// Returns the course from the first to the last place that looks unpainted; at least two places.
     std::vector<glm::dvec3> unpainted_part(const std::vector<glm::dvec3>& course) const
     {
         size_t first = course.size(), last = 0;
@@ -129,7 +129,7 @@ private:
         return {course.begin() + std::ptrdiff_t(first), course.begin() + std::ptrdiff_t(last + 1)};
     }
 
-    /// Beyond the upper end of a floret's vein, with a threshold that lets tissue be painted.
+    /// Paints above the upper end of a floret's vein, with a threshold low enough to include receptacle tissue.
     void paint_receptacle(const std::vector<glm::dvec3>& course)
     {
         const glm::dvec3 top = course.front().z > course.back().z ? course.front() : course.back();

@@ -38,7 +38,7 @@ private:
     }
     bool is_end(uint32_t node) const { return scene_.trace().internodes_of(node).size() == 1; }
 
-    /// The cost of going on with a segment from its first node: smaller comes earlier.
+    /// Returns the cost of continuing with a segment from its node `from`; the segment with the lowest cost comes next.
     double cost(size_t segment, uint32_t from) const
     {
         const double side = double(scene_.spec().side);

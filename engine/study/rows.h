@@ -1,5 +1,5 @@
 #pragma once
-// The results of a study: one row for each annotation that a simulated annotator makes. Any thread.
+// The results of a study: one row per annotation made by a simulated annotator. Any thread.
 
 #include <array>
 #include <cstdint>
@@ -20,7 +20,7 @@ constexpr std::span<const Spelling<StudyTask>> spellings_of(StudyTask)
     return STUDY_TASKS;
 }
 
-/// The touch of a condition: no force at all, or the force of a TouchMode.
+/// The touch mode of a condition: no force, or the force of a TouchMode.
 enum class StudyTouch : uint8_t { none, surface, proximity, object };
 inline constexpr Spelling<StudyTouch> STUDY_TOUCHES[] = {{StudyTouch::none, "none"},
                                                          {StudyTouch::surface, "surface"},
@@ -40,7 +40,7 @@ struct StudyCondition {
     bool operator==(const StudyCondition&) const = default;
 };
 
-/// The columns of a row. Those of the thesis's table 6.1 come first.
+/// The columns of a row. The columns of the thesis's table 6.1 come first.
 enum class Outcome : uint8_t {
     dice_partial,
     dice_full,
@@ -64,7 +64,7 @@ enum class Outcome : uint8_t {
     force_mean,
     force_most,
 };
-/// The outcome by which a task is judged, named before any condition was compared. All others are exploratory.
+/// The outcome by which a task is judged, fixed before conditions were compared. All other outcomes are exploratory.
 constexpr Outcome main_outcome(StudyTask task)
 {
     return task == StudyTask::paint ? Outcome::dice_partial : Outcome::centreline_rms;
@@ -73,9 +73,9 @@ inline constexpr size_t OUTCOMES = size_t(Outcome::force_most) + 1;
 
 struct OutcomeColumn {
     Outcome outcome;
-    std::string_view name;     ///< heading of the column of a CSV file
+    std::string_view name;     ///< heading of the column in the CSV file
     std::string_view unit;     ///< "1" for ratios and counts
-    int better;                ///< 1 where more is better, -1 where less is, 0 where neither
+    int better;                ///< 1 if higher is better, -1 if lower is better, 0 if neither
     std::string_view meaning;  ///< a sentence for the codebook
 };
 std::span<const OutcomeColumn> outcome_columns();
@@ -83,15 +83,15 @@ std::span<const OutcomeColumn> outcome_columns();
 struct StudyRow {
     StudyCondition condition;
     uint32_t annotator = 0;               ///< number of the simulated annotator, from 1
-    uint32_t seed = 0;                    ///< seed of its phantom and its hand; equal seeds are paired
-    std::array<double, OUTCOMES> values;  ///< NaN where the task has no such outcome
+    uint32_t seed = 0;                    ///< seed of phantom and hand; rows with equal seeds form pairs
+    std::array<double, OUTCOMES> values;  ///< NaN for outcomes that the task does not measure
     double operator[](Outcome outcome) const { return values[size_t(outcome)]; }
 };
 
-/// A CSV file (RFC 4180) with a header: task, touch, law, probe_radii, noise, annotator, seed, then the names of
-/// `outcome_columns()`. NaN is an empty field. Numbers are written so that they read back as the same bits.
+/// Returns a CSV file (RFC 4180) with a header: task, touch, law, probe_radii, noise, annotator, seed, then the names
+/// of `outcome_columns()`. NaN becomes an empty field. Numbers have enough digits to be read back as the same bits.
 std::string csv_of(std::span<const StudyRow> rows);
-/// Fails with a sentence that names file, line and column.
+/// Reads such a file. Fails with a sentence that names file, line and column.
 std::vector<StudyRow> read_study_rows(const std::filesystem::path& file);
 
 }  // namespace shvr

@@ -50,7 +50,7 @@ Mask mask_of(const VolumeSource& groups)
     return mask;
 }
 
-/// Keeps the words' voxels that are connected through faces to `seed` within the region.
+/// Keeps only the voxels (bits of `words`) that are connected to `seed` through faces within the region.
 class HostFlood {
 public:
     HostFlood(const BrushRegion& region, std::vector<uint32_t>& words) : size_(region.box.size()), words_(words)
@@ -129,7 +129,7 @@ double StudyScene::voxels_per_metre() const
 void StudyScene::note_bits()
 {
     const Size3 size = this->size();
-    words_per_row_ = (size.x + 31) / 32 + 1;  // one word of zeros, so that rows may be read across words
+    words_per_row_ = (size.x + 31) / 32 + 1;  // an extra word of zeros, since reads may extend into the next word
     bits_.assign(size_t(words_per_row_ * size.y * size.z), 0u);
     half_size_ = glm::ivec3((size + int64_t{1}) / int64_t{2});
     std::vector<uint8_t> visible(size_t(half_size_.x) * size_t(half_size_.y) * size_t(half_size_.z));
@@ -145,7 +145,7 @@ void StudyScene::note_bits()
     for (size_t i = 0; i < visible.size(); ++i) surface_[i] = visible[i] >= 4;
 }
 
-/// Finds the pieces of the full mask outside the partial one, and the middles of their slices along their longest side.
+/// Finds the pieces of the full mask outside the partial one, and the centres of their slices along the longest axis.
 void StudyScene::note_separate_bundles()
 {
     const Size3 size = this->size();

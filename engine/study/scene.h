@@ -1,6 +1,6 @@
 #pragma once
-// What is annotated in a study: a phantom of the thesis's section, read into memory once, with its truth. Immutable
-// once made, so any number of annotators on any threads may share it.
+// The scene that a study annotates: a phantom of the thesis's section in memory, with its ground truth. Immutable once
+// made, so annotators on several threads may share it.
 
 #include <cstdint>
 #include <vector>
@@ -14,14 +14,14 @@
 
 namespace shvr {
 
-/// The intensity from which on voxels are visible, felt and painted: half-way between ground tissue (60) and veins
+/// The lowest intensity of voxels that are visible, felt and painted: half-way between ground tissue (60) and veins
 /// (200), so that veins keep their width.
 inline constexpr double STUDY_THRESHOLD = 130.0;
-/// A threshold that lets receptacle tissue (90) be painted, which a mistaken annotator chooses.
+/// A threshold low enough to include receptacle tissue (90), chosen by an annotator who makes a mistake.
 inline constexpr double MISTAKEN_THRESHOLD = 80.0;
 
 struct Phantom;
-/// The phantom's true trace, in physical units, for voxels of this size; names are the indices of its nodes and links.
+/// The phantom's true trace, in physical units for this voxel spacing. Names are indices of phantom nodes and links.
 TraceGraph trace_of(const Phantom& phantom, const glm::dvec3& spacing);
 
 struct SceneSpec {
@@ -31,7 +31,7 @@ struct SceneSpec {
     bool operator==(const SceneSpec&) const = default;
 };
 
-/// Bundles that are joined to no others, and so not part of the task.
+/// A bundle that is joined to no other bundle, and so is not part of the task.
 struct SeparateBundle {
     std::vector<glm::dvec3> course;  ///< voxels; along its axis
 };
@@ -41,7 +41,7 @@ public:
     explicit StudyScene(const SceneSpec& spec);
 
     const SceneSpec& spec() const { return spec_; }
-    /// One level, spacing 1: physical units are voxels.
+    /// The volume, with one level and spacing 1, so that physical units equal voxels.
     const VolumeSource& volume() const { return *volume_; }
     Size3 size() const { return volume_->info().size; }
     const Mask& full_mask() const { return full_; }
@@ -49,18 +49,18 @@ public:
     const TraceGraph& trace() const { return trace_; }
     const std::vector<TraceSegment>& segments() const { return segments_; }
     const std::vector<SeparateBundle>& separate_bundles() const { return separate_; }
-    /// Mean radius of the true trace's nodes, voxels: the veins' within 5 %.
+    /// Mean radius in voxels of the nodes of the true trace, which is within 5 % of the veins' radius.
     double vein_radius() const { return vein_radius_; }
     /// Metres in the hand to voxels.
     double voxels_per_metre() const;
 
     double intensity(const Size3& voxel) const { return voxels_[size_t(index_of(voxel, size()))]; }
-    /// Computes the relevance around a probe, with the bits of `relevance_on_host` (engine/live/relevance_host.h).
+    /// Computes the relevance around a probe, bit for bit like `relevance_on_host` (engine/live/relevance_host.h).
     void put_relevance(const RegionWish& wish, RelevancePatch& patch) const;
-    /// Whether a picture shows a surface in this voxel of half the resolution: at least half of its eight voxels are
-    /// visible. A picture averages, so single voxels of noise hide nothing.
+    /// Whether a picture shows a surface at this voxel of the half-resolution grid: at least four of its eight voxels
+    /// reach STUDY_THRESHOLD. Pictures average voxels, so a single noisy voxel hides nothing behind it.
     bool shows_surface(const glm::ivec3& half_voxel) const;
-    /// Returns the voxels that a brush selects along a path, as the device's kernels do; `fill` and `flood` only.
+    /// Returns the voxels that a brush selects along a path, like the GPU kernels do. Only for `fill` and `flood`.
     VoxelSelection select(const PaintOp& stroke) const;
 
 private:
@@ -76,7 +76,7 @@ private:
     std::vector<SeparateBundle> separate_;
     double vein_radius_ = 0.0;
     int64_t words_per_row_ = 0;
-    std::vector<uint32_t> bits_;  ///< voxels at or above STUDY_THRESHOLD: bit b of word w is voxel x = 32 w + b
+    std::vector<uint32_t> bits_;  ///< voxels at or above STUDY_THRESHOLD: bit b of word w of a row is x = 32 w + b
     std::vector<bool> surface_;   ///< of half-resolution voxels
     glm::ivec3 half_size_{0};
 };

@@ -1,5 +1,5 @@
 #pragma once
-// Scores of an annotation, by the measures of `shvr evaluate`. Any thread.
+// Scores of an annotation, computed by the measures of `shvr evaluate`. Any thread.
 
 #include "engine/annotation/work/change.h"
 #include "engine/study/rows.h"
@@ -7,8 +7,8 @@
 
 namespace shvr {
 
-/// Writes the scores of the row's task: Dice scores of paint, scores and errors of a trace. As in the thesis, nodes are
-/// held against all bundles. Numbers of an empty annotation are 0; shares and distances of nothing stay NaN.
+/// Writes the scores of the row's task: Dice scores of a mask, or scores and errors of a trace. As in the thesis, nodes
+/// are compared with all bundles. Counts for an empty annotation are 0; its ratios and distances are NaN.
 void put_scores(const StudyScene& scene, const Document& document, StudyRow& row);
 
 }  // namespace shvr

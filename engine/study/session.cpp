@@ -8,13 +8,13 @@ namespace shvr {
 
 namespace {
 
-constexpr double FAR_M = 0.010;           ///< farther reaches pause the force, as the thesis's participants did
-constexpr double ENGAGE_S = 1.0;          ///< until a paused force is back (haptics/force.h)
-constexpr double MIN_REACH_S = 0.25;      ///< a reach takes at least that (Meyer et al. 1988)
-constexpr double RIGHT_S = 0.1;           ///< how long the probe must look right
-constexpr double STEADY_M_PER_S = 0.003;  ///< a guided hand that is slower feels steady
-constexpr double TOLERANCE = 1.5;         ///< in errors of the eye: an eye corrects only what it sees
-constexpr double WRONG_BUNDLE = 2.0;      ///< in radii: a guided probe that far off touches something else
+constexpr double FAR_M = 0.010;           ///< longer reaches pause the force, as the thesis's participants did
+constexpr double ENGAGE_S = 1.0;          ///< time until a paused force is fully back (haptics/force.h)
+constexpr double MIN_REACH_S = 0.25;      ///< minimum duration of a reach (Meyer et al. 1988)
+constexpr double RIGHT_S = 0.1;           ///< time for which the probe must look right before a tool acts
+constexpr double STEADY_M_PER_S = 0.003;  ///< below this speed, a guided hand feels steady
+constexpr double TOLERANCE = 1.5;         ///< in standard deviations of the eye: smaller errors look right
+constexpr double WRONG_BUNDLE = 2.0;      ///< in vein radii: a guided probe farther off is on another bundle
 
 }  // namespace
 

@@ -1,6 +1,6 @@
 #pragma once
-// An annotator's session: what tracing and painting have in common. The annotator looks for a view, reaches for the
-// place that is seen, holds until it looks or feels right, and acts. One thread.
+// The base of an annotator's tracing and painting sessions. The annotator chooses a view, reaches for a place as the
+// eye locates it, holds until the probe looks right or feels steady, and acts. One thread.
 
 #include <memory>
 
@@ -32,22 +32,22 @@ public:
 protected:
     const StudyScene& scene() const { return input_.scene; }
     const StudyView& view() const { return study_views()[view_]; }
-    /// Turns to a view in which most of the places are visible. Returns the share of them that is.
+    /// Changes to a view that shows most of the places, if necessary. Returns the share of places that are visible.
     double look_at(std::span<const glm::dvec3> voxels, double radius);
     void change_view(size_t view);
-    /// Moves the hand to a place as it is seen: in one reach, and a correction after a look. Far away, the force is
-    /// paused on the way.
+    /// Moves the hand to a place as the eye locates it: one reach, then a visual correction. The force is paused during
+    /// a long reach.
     void reach(const glm::dvec3& seen);
-    /// Holds the hand until the probe looks right or feels steady. A tool may then act, at `desk().tool()`.
+    /// Holds the hand until the probe looks right or feels steady. Afterwards a tool may act at `desk().tool()`.
     void settle(const glm::dvec3& seen);
     /// Where a place is taken to be.
     glm::dvec3 seen(const glm::dvec3& voxel) { return voxel + sight_.error_of_glance(view(), random_); }
-    /// Moves the place that the hand aims at, in a straight line, with the least jerk.
+    /// Moves the place that the hand aims at along a straight line, with minimum jerk.
     void move(const glm::dvec3& to, double seconds);
     void think(double seconds) { desk_.spend(seconds * input_.skill.pace); }
-    /// Whether a mistake happens now. Counts the chance.
+    /// Decides at random whether a mistake happens now, and counts the opportunity.
     bool errs(Mistake mistake);
-    /// Whether the annotator notices the mistake just made; then undoes the last `steps` commands.
+    /// Decides at random whether the annotator notices the mistake just made. If so, undoes the last `steps` commands.
     void notice(Mistake mistake, size_t steps);
 
     StudySessionInput input_;
@@ -55,7 +55,7 @@ protected:
     StudyRandom random_;
     StudyDesk desk_;
     StudySight sight_;
-    glm::dvec3 aim_{0.0};  ///< voxels; where the hand would be if it did not stray
+    glm::dvec3 aim_{0.0};  ///< in voxels: where the hand would be if it did not stray
     size_t view_ = 0;
     uint32_t views_changed_ = 0, segments_unseen_ = 0;
     MistakeTally mistakes_;
@@ -64,7 +64,7 @@ protected:
 std::unique_ptr<StudySession> make_tracing_session(const StudySessionInput& input);
 std::unique_ptr<StudySession> make_painting_session(const StudySessionInput& input);
 
-/// Share of a segment's places that a view must show, so that the segment is annotated.
+/// Share of a segment's places that must be visible in some view; otherwise the segment is skipped.
 inline constexpr double SEEN_ENOUGH = 0.5;
 
 }  // namespace shvr

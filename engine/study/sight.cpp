@@ -23,7 +23,7 @@ std::span<const StudyView> study_views()
 
 bool StudySight::shows(const StudyView& view, const glm::dvec3& voxel, double radius) const
 {
-    // Starts beyond the bundle's own surface; two voxels, for the picture's half resolution.
+    // Starts outside the bundle's own surface, two voxels further, since the picture has half the resolution.
     const double far = glm::length(glm::dvec3(scene_.size()));
     for (double way = 1.5 * radius + 2.0; way < far; way += 1.0) {
         const glm::dvec3 at = voxel + way * view.to_eye;

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double NOT_KNOWN = std::numeric_limits<double>::quiet_NaN();
 
-/// a(n) of interval_of_mean for n = 2 ... 40, from Student's and the normal distribution: a table, since no function of
-/// the standard library gives it, and the same bits everywhere.
+/// a(n) of interval_of_mean for n = 2 ... 40, computed from Student's and the normal distribution. It is a table
+/// because the standard library has no such function, and a table has the same bits on every machine.
 constexpr double TAILS[] = {0.0,      6.834e-8, 0.000119, 0.000954, 0.002432, 0.004109, 0.005738, 0.007225,
                             0.008551, 0.009722, 0.010757, 0.011671, 0.012483, 0.013207, 0.013856, 0.014439,
                             0.014966, 0.015445, 0.015881, 0.016280, 0.016646, 0.016983, 0.017294, 0.017582,
@@ -26,7 +26,7 @@ constexpr size_t TABLED = std::size(TAILS) + 1;  ///< the largest n in the table
 double tail_of(size_t count)
 {
     if (count <= TABLED) return TAILS[count - 2];
-    // The distance from 0.025 falls as 1 / n: within 0.00004 of a(n).
+    // Beyond the table, 0.025 - a(n) is approximated as proportional to 1 / n, with an error below 0.00004.
     return 0.025 - (0.025 - TAILS[std::size(TAILS) - 1]) * double(TABLED) / double(count);
 }
 

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr double NO_SCORE = std::numeric_limits<double>::quiet_NaN();
 
-/// The begin of the names of the files with an item's row, and with those of the same hand.
+/// Returns the begin of a CSV file's name: "rows", or "hand-" with trait and factor if the item varies the hand.
 std::string file_stem(const StudyItem& item)
 {
     if (item.trait >= hand_traits().size()) return "rows";
@@ -150,7 +150,7 @@ private:
                  in_quotes(note().substr(0, note().size() - 1)), ", as this study's phantoms; choose another folder");
     }
 
-    /// Takes rows and repeats that an earlier run, or another part, has written.
+    /// Reads rows and repeats that an earlier run or another part has already written.
     void read_rows()
     {
         for (const fs::directory_entry& entry : fs::directory_iterator(run_.folder)) {
@@ -177,7 +177,7 @@ private:
                 if (is_repeat_of(plan_.pairs[i], repeat)) repeats_[i] = repeat;
     }
 
-    /// Cuts what is left of the plan into pieces, and keeps those of this part.
+    /// Groups the unfinished items of the plan into pieces, one per phantom, and keeps the pieces of this part.
     void cut()
     {
         std::map<std::pair<uint32_t, double>, Piece> pieces;
@@ -230,7 +230,7 @@ private:
         write_rows();
     }
 
-    /// Writes all files, in the order of the plan. A part writes only what it made itself, into files of its own.
+    /// Writes all files in the order of the plan. A part writes only the rows that it made itself, into its own files.
     void write_rows() const
     {
         std::map<std::string, std::vector<StudyRow>> files;

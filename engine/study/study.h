@@ -1,7 +1,7 @@
 #pragma once
-// The study: which annotations it consists of, and running them on several threads. Annotations of one phantom form a
-// piece of work; finished pieces are written at once, so a study that was interrupted continues where it was. Rows are
-// equal bit for bit at any number of threads, and however often the study was interrupted or split.
+// The study: the list of its annotations, and running them on several threads. All annotations of one phantom are one
+// piece of work. Finished pieces are written at once, so that an interrupted study resumes. Rows are equal bit for bit
+// for any number of threads, and however often the study was interrupted or split.
 
 #include <filesystem>
 #include <optional>
@@ -26,21 +26,21 @@ constexpr std::span<const Spelling<StudySize>> spellings_of(StudySize)
 struct StudyItem {
     StudyCondition condition;
     uint32_t annotator = 1, seed = 1;
-    size_t trait = SIZE_MAX;  ///< of hand_traits(), multiplied by `factor`; SIZE_MAX: none
+    size_t trait = SIZE_MAX;  ///< the member of hand_traits() that is multiplied by `factor`; SIZE_MAX: none
     double factor = 1.0;
 };
-/// Two annotations of one phantom, by one annotator twice or by two.
+/// Two annotations of one phantom, by one annotator twice or by two annotators.
 struct StudyPair {
     StudyCondition condition;
     uint32_t annotator = 1, other = 1, seed = 1;
 };
 
-/// What `--conditions`, `--seeds` and `--annotators` choose instead of a size's own.
+/// Overrides of a size's defaults, from `--conditions`, `--seeds` and `--annotators`.
 struct StudyChoice {
     StudySize size = StudySize::standard;
     std::optional<uint32_t> seeds{};
     std::vector<StudyCondition> conditions{};  ///< empty: those of the size
-    std::vector<uint32_t> annotators{};        ///< each annotates each phantom; empty: one for each, in turn
+    std::vector<uint32_t> annotators{};        ///< all of them annotate each phantom; empty: one each, in turn
 };
 
 struct StudyPlan {
@@ -49,40 +49,40 @@ struct StudyPlan {
     std::vector<StudyItem> items;
     std::vector<StudyPair> pairs;
 };
-/// The condition around which one factor at a time is varied.
+/// The central condition, from which one factor at a time is varied.
 StudyCondition study_centre(StudyTask task);
 /// Lists the conditions of painting and tracing. `standard`: 30 repeats of `none` and of the centre; 10 of each other
-/// touch, law, probe radius and noise; 10 of `none` and of the centre with each trait of the hand halved and doubled;
-/// 10 pairs for repeatability within and between annotators. `small`: a few of these, on small phantoms. `full`: 30
-/// repeats of all combinations. A varied probe radius or noise is compared with `none` at the same radius and noise.
+/// touch, law, probe radius and noise; 10 of `none` and of the centre with each hand trait halved and doubled; 10 pairs
+/// for repeatability within and between annotators. `small`: a few of these, on small phantoms. `full`: 30 repeats of
+/// all combinations. A varied probe radius or noise is compared with `none` at the same radius and noise.
 StudyPlan plan_study(const StudyChoice& choice);
-/// Reads conditions: a CSV file with the columns task, touch, law, probe_radii, noise. Fails with a sentence that names
-/// file, line and column.
+/// Reads conditions from a CSV file with the columns task, touch, law, probe_radii, noise. Fails with a sentence that
+/// names file, line and column.
 std::vector<StudyCondition> read_study_conditions(const std::filesystem::path& file);
 
 struct StudyRun {
     std::filesystem::path folder;
     int threads = 0;           ///< 0: one for each core
-    int64_t part = 0, of = 1;  ///< runs every `of`-th phantom, from number `part` on
-    /// Writes each trace and each mask into the folder `annotations`; those that are missing there are made again.
+    int64_t part = 0, of = 1;  ///< runs every `of`-th phantom, starting at number `part`
+    /// Writes each trace and mask into the folder `annotations`. Annotations whose files are missing are made again.
     bool keeps_annotations = false;
-    Progress progress{};  ///< may throw, which ends the run after the phantoms in work
+    Progress progress{};  ///< may throw; the run then ends once the current phantoms are finished
 };
 struct StudyVariation {
     size_t trait = 0;
     double factor = 1.0;
     std::vector<StudyRow> rows;
 };
-/// In the order of the plan. A part, or an interrupted run, has fewer.
+/// Results in the order of the plan. A part, or an interrupted run, has only some of them.
 struct StudyResults {
     std::vector<StudyRow> rows;
     std::vector<StudyVariation> variations;
     std::vector<StudyRepeat> repeats;
-    size_t missing = 0;    ///< annotations, and pairs of them, that no part has made yet
+    size_t missing = 0;    ///< number of annotations and pairs that no run or part has made yet
     size_t made_here = 0;  ///< annotations that this run made
 };
-/// Writes rows*.csv, hand-TRAIT-FACTOR*.csv and repeats*.csv into the folder, and reads those that are there. Fails if
-/// the folder holds a study of another size of phantoms.
+/// Runs the items that have no row yet. Writes rows*.csv, hand-TRAIT-FACTOR*.csv and repeats*.csv into the folder.
+/// Fails if the folder holds a study with phantoms of another size.
 StudyResults run_study(const StudyPlan& plan, const StudyRun& run);
 
 }  // namespace shvr

@@ -1,5 +1,5 @@
 #pragma once
-// Lines of a study's CSV files (RFC 4180 without quotes): a header of names, then a field for each name. Any thread.
+// The lines of a study's CSV files (RFC 4180 without quotes): a header, then one line of fields per row. Any thread.
 
 #include <filesystem>
 #include <functional>
@@ -13,7 +13,7 @@
 
 namespace shvr {
 
-/// Parses the fields of one line; failures name its place and column.
+/// Parses the fields of one line. Error messages name the line's place and the column.
 struct StudyLine {
     std::string place;
     std::span<const std::string_view> names;
@@ -39,8 +39,8 @@ struct StudyLine {
 /// The line of names, with its end.
 std::string study_header(std::span<const std::string_view> names);
 
-/// Calls `take` with each line after the header. Fails with a sentence that names file and line if the header is
-/// another one or a line has more or fewer fields.
+/// Calls `take` with each line after the header. Fails with a sentence that names file and line if the header differs
+/// from the expected one, or if a line has the wrong number of fields.
 void read_study_lines(const std::filesystem::path& file, std::span<const std::string_view> names,
                       const std::function<void(const StudyLine&)>& take);
 

@@ -1,4 +1,4 @@
-// How a simulated annotator traces: node by node along each segment of the plan.
+// How a simulated annotator traces: places nodes one after the other along each segment of the plan.
 
 #include <algorithm>
 #include <limits>
@@ -10,9 +10,9 @@ namespace shvr {
 
 namespace {
 
-constexpr double NODE_SPACING_M = 0.0054;  ///< the thesis's participants placed 2.8 nodes a segment
+constexpr double NODE_SPACING_M = 0.0054;  ///< the thesis's participants placed 2.8 nodes per segment
 constexpr int TRIES = 3;                   ///< to place or select a node
-constexpr double OFF_AXIS = 1.2;           ///< in vein radii: a node that is seen farther off is placed again
+constexpr double OFF_AXIS = 1.2;           ///< in vein radii: a node that looks farther off is placed again
 
 class TracingSession final : public StudySession {
 public:
@@ -59,7 +59,7 @@ private:
     std::optional<uint32_t> selected() const { return desk_.document().trace.selection().node(); }
     bool exists(uint32_t node) const { return desk_.document().trace.nodes().contains(node); }
 
-    /// Selects the node that was placed at an end of the true segment, or places the first one there.
+    /// Selects the placed node at an end of the true segment, or places the first node if there is none yet.
     std::optional<uint32_t> begin_at(uint32_t truth, const glm::dvec3& point, std::span<const glm::dvec3> course)
     {
         const auto there = nodes_.find(truth);
@@ -74,7 +74,7 @@ private:
         return node;
     }
 
-    /// Reaches for a placed node, and selects it or links the selected one to it.
+    /// Reaches for a placed node, and selects it or links it to the selected node.
     bool pick(uint32_t node, bool links)
     {
         const double within = 2.0 * desk_.probe_radius();
@@ -94,7 +94,7 @@ private:
         return false;
     }
 
-    /// Links the selected node to one that closes a loop, and goes on from there.
+    /// Links the selected node to an existing one, which closes a loop, and selects the latter.
     std::optional<uint32_t> join(uint32_t node)
     {
         if (!exists(node) || !pick(node, true)) return std::nullopt;
@@ -103,7 +103,7 @@ private:
         return node;
     }
 
-    /// Places a node, joined to the selected one. A node that is seen off the vein is undone and placed again.
+    /// Places a node linked to the selected one. If the node looks off the vein, undoes it and places it again.
     std::optional<uint32_t> add_node(const glm::dvec3& point, std::span<const glm::dvec3> course)
     {
         for (int i = 0; i < TRIES && !desk_.is_over(); ++i) {
@@ -121,7 +121,7 @@ private:
         return std::nullopt;
     }
 
-    /// Whether a node is seen inside the vein: across the line of sight, where its depth does not show.
+    /// Whether a node appears inside the vein, judged across the line of sight only, since depth is not visible.
     bool looks_right(const glm::dvec3& node, std::span<const glm::dvec3> course)
     {
         const glm::dvec3 shown = seen(node);
@@ -135,7 +135,7 @@ private:
         return least <= OFF_AXIS * scene().vein_radius();
     }
 
-    /// Makes the mistakes that happen at this segment.
+    /// Makes the mistakes that happen at this segment, chosen at random.
     void err(const std::vector<uint32_t>& placed)
     {
         if (placed.size() < 2 || !selected() || desk_.is_over()) return;
@@ -185,7 +185,7 @@ private:
         return best;
     }
 
-    std::map<uint32_t, uint32_t> nodes_;  ///< node of the truth -> node placed there
+    std::map<uint32_t, uint32_t> nodes_;  ///< node of the true trace -> the node placed there
 };
 
 }  // namespace

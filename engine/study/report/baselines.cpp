@@ -15,7 +15,7 @@ namespace {
 constexpr int64_t MAX_BASELINE_BYTES = int64_t(1) << 24;
 constexpr const char* REMEDY = "; make the file again with tools/study/baselines.py";
 
-/// The fields of a line of RFC 4180 without line breaks in fields: commas may be in quotes, quotes are doubled.
+/// Splits a line of CSV (RFC 4180), whose fields have no line breaks. In quotes, fields may contain commas and "".
 std::vector<std::string> fields_of(std::string_view line)
 {
     std::vector<std::string> fields(1);

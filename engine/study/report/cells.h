@@ -1,5 +1,5 @@
 #pragma once
-// Cells and headings of a report's tables, and names of outcomes for readers. Any thread.
+// Table cells and headings of a report, and readable names of outcomes. Any thread.
 
 #include <initializer_list>
 #include <string>
@@ -15,17 +15,17 @@ inline constexpr const char* END = "</tbody></table>\n";
 
 std::string cell(std::string_view words, const char* look = "");
 std::string head(std::initializer_list<std::string_view> names);
-/// "0.945 [0.935, 0.955]"; the mean alone for one value, "-" for none.
+/// Formats as "0.945 [0.935, 0.955]"; a single value as the mean alone, no value as "-".
 std::string with_interval(const Summary& summary);
 
 const OutcomeColumn& column_of(Outcome outcome);
-/// The name of a column, with its unit if it has one.
+/// Returns the name of a column, with its unit if it has one.
 std::string heading_of(Outcome outcome);
-/// The main outcome of a task in words, with its column and unit.
+/// Describes the main outcome of a task in words, with its column and unit.
 std::string main_outcome_in_words(StudyTask task);
 /// "Painting"
 std::string name_of(StudyTask task);
-/// The outcomes that rows of a task have.
+/// Returns the outcomes for which rows of a task have values.
 std::vector<Outcome> outcomes_of(const StudyReport& report, StudyTask task);
 StudyCondition centre_of(const StudyReport& report, StudyTask task);
 

@@ -22,7 +22,7 @@ std::string verdict_of(const PairedDifference& paired, int better)
     return paired.is_better(better) ? "better" : paired.is_worse(better) ? "worse" : "undecided";
 }
 
-/// The main outcome of a condition, compared with no touch.
+/// The main outcome of a condition with touch, compared with that of its counterpart without touch.
 struct MainComparison {
     StudyCondition condition;
     PairedDifference paired;
@@ -48,7 +48,7 @@ std::vector<MainComparison> comparisons_of(const StudyReport& report, StudyTask 
     return comparisons;
 }
 
-/// The condition without touch that has the best mean main outcome, compared with the centre in the same pairs.
+/// Finds the condition without touch with the best mean main outcome, and compares it in pairs with the centre.
 std::string best_free_hand(const StudyReport& report, StudyTask task)
 {
     const Outcome outcome = main_outcome(task);
@@ -83,7 +83,7 @@ std::set<std::pair<uint32_t, uint32_t>> pairs_of(std::span<const HandVariation> 
 
 using Verdicts = std::map<StudyTask, std::string>;
 
-/// A line of the table. With `expected`, answers that do not confirm it are marked.
+/// Returns a row of the table. Marks verdicts that differ from `expected`; null: marks none.
 std::string robustness_row(const std::string& hand, std::span<const StudyRow> rows, const StudyReport& report,
                            const Verdicts* expected, Verdicts& found)
 {

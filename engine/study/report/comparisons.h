@@ -1,6 +1,6 @@
 #pragma once
-// A study's comparisons with no touch, as markup: main outcomes, results that touch makes worse, whether the answer
-// depends on the modelled hand. Any thread.
+// A study's comparisons of touch with no touch, as markup: main outcomes, outcomes that touch makes worse, and whether
+// the verdicts depend on the modelled hand. Any thread.
 
 #include <string>
 
@@ -8,18 +8,18 @@
 
 namespace shvr {
 
-/// The tasks in the order of the report.
+/// Tasks in the order in which the report shows them.
 inline constexpr StudyTask REPORTED_TASKS[] = {StudyTask::paint, StudyTask::trace};
 
-/// The main outcome of a task: a line for each condition with touch, compared with no touch in the same pairs.
+/// Tabulates the main outcome of a task: a row for each condition with touch, compared in pairs with no touch.
 std::string main_table_of(const StudyReport& report, StudyTask task);
-/// Where touch does not help: pairs that are worse at the centre, conditions without a better main outcome, and the
-/// best condition without touch, which may be as good as the centre.
+/// Lists where touch does not help: pairs in which the central condition is worse, conditions whose main outcome does
+/// not improve, and the best condition without touch, which may be as good as the central condition.
 std::string limits_of(const StudyReport& report);
-/// Differences from no touch whose interval lies on the worse side, in any outcome.
+/// Tabulates all outcomes whose difference from no touch has its whole interval on the worse side.
 std::string worse_table_of(const StudyReport& report);
-/// Whether the central comparison has the same answer with each parameter of the hand halved and doubled. Those have
-/// fewer pairs than the centre, so a line shows the stated hand in the same pairs, too.
+/// Tabulates whether the central comparison has the same verdict with each hand parameter halved and doubled. These
+/// runs have fewer pairs, so a row also gives the verdict of the unchanged hand in the same pairs.
 std::string robustness_table_of(const StudyReport& report);
 
 }  // namespace shvr

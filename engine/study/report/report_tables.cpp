@@ -21,13 +21,13 @@ constexpr Outcome TABLE_6_1[] = {dice_partial,    dice_full,      node_score, no
 constexpr Outcome TABLE_6_1_AND_DISTANCE[] = {dice_partial,   dice_full,          node_score,     nodes_out,
                                               nodes,          internode_score,    internodes_out, internodes,
                                               segments_found, topological_errors, centreline_rms};
-/// The task that has an outcome of table 6.1.
+/// Returns the task in which an outcome of table 6.1 is measured.
 StudyTask task_of(Outcome outcome)
 {
     return outcome == dice_partial || outcome == dice_full ? StudyTask::paint : StudyTask::trace;
 }
 
-/// Values of one outcome of one annotator at the centre, over its seeds; the outcome's own task has it.
+/// Summarises an outcome of one annotator under the central condition, over all seeds, in the task that measures it.
 Summary of_annotator(const StudyReport& report, uint32_t annotator, Outcome outcome)
 {
     std::vector<double> values;
@@ -40,7 +40,7 @@ Summary of_annotator(const StudyReport& report, uint32_t annotator, Outcome outc
     return summary_of(values);
 }
 
-/// A line of means, and one of standard deviations, of columns of values.
+/// Returns two table rows: the means and the standard deviations of the columns.
 std::string mean_and_sd(const std::string& who, const std::map<Outcome, std::vector<double>>& columns)
 {
     std::string means = "<tr class=\"sum\">" + cell(who + ", mean"), sds = "<tr class=\"sum\">" + cell(who + ", sd");
@@ -69,7 +69,7 @@ std::string thesis_part()
     return markup + mean_and_sd("people", columns);
 }
 
-/// For comparison with algorithms: simulated annotators without touch and at the centre, and the thesis's people.
+/// Returns rows to compare algorithms with: simulated annotators without touch and at the centre, and people.
 std::string rows_of_hands(const StudyReport& report)
 {
     std::string markup;

@@ -7,16 +7,16 @@
 
 namespace shvr {
 
-/// The thesis's table 6.1, and the same columns of the simulated annotators at the centre.
+/// Shows table 6.1 of the thesis, with the same columns for the simulated annotators under the central condition.
 std::string thesis_table_of(const StudyReport& report);
-/// Means with intervals: a line for each condition, a column for each outcome that the task has.
+/// Tabulates means with intervals: a row for each condition, a column for each outcome of the task.
 std::string means_table_of(const StudyReport& report, StudyTask task);
 std::string repeat_table_of(const StudyReport& report);
 std::string baseline_table_of(const StudyReport& report);
 std::string hand_table_of(const StudyReport& report);
-/// Every column of a row: name, unit, meaning, which side is better.
+/// Lists the columns of a row: name, unit, meaning, and whether higher or lower is better.
 std::string codebook();
-/// The seeds of each condition, and all rows as CSV.
+/// Lists the seeds of each condition, and all rows as CSV.
 std::string data_of(const StudyReport& report);
 
 }  // namespace shvr

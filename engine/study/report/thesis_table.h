@@ -1,5 +1,5 @@
 #pragma once
-// Table 6.1 of the thesis, to print next to the machine's results. Any thread.
+// Table 6.1 of the thesis, for display next to the simulated results. Any thread.
 
 #include <cmath>
 #include <cstdint>
@@ -10,12 +10,12 @@
 
 namespace shvr {
 
-/// Source of the numbers, as a sentence for readers.
+/// The source of the numbers, as a sentence for the report.
 inline constexpr char THESIS_SOURCE[] =
     "Table 6.1 of the thesis in which SHVR was first described: ten people, one section of a Gerbera head, ten minutes "
     "for each task. They chose and changed the mode of touch as they liked.";
 
-/// One person's results. `participant` 0: the truth's own annotation.
+/// The results of one participant. `participant` 0: the reference annotation.
 struct ThesisRow {
     int participant = 0;
     double dice_partial, dice_full;
@@ -23,7 +23,7 @@ struct ThesisRow {
     int nodes_out, nodes;
     double internode_score;
     int internodes_out, internodes, segments_found, topological_errors;
-    /// The value in a column of a study's rows; null for those that the thesis does not have.
+    /// Returns the value in a column of a study's rows; null for columns that the thesis lacks.
     std::optional<double> value(Outcome outcome) const;
 };
 /// The truth first, then the ten participants.
