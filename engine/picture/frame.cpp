@@ -15,16 +15,16 @@ namespace shvr {
 
 namespace {
 
-/// A tile bounds the time of a single submission on a slow device. On a GPU, square tiles keep similar rays together. A
-/// CPU serves rows of bricks from its caches, and waits for its slowest thread at the end of each tile. Powers of two
-/// make the number of dispatches independent of the number of threads.
+/// Chooses sizes of thread groups and tiles. Tiles bound the time of one submission on a slow device. GPUs get square
+/// tiles, so that rays in a tile are similar. A CPU has rows of bricks in its caches, and waits for its slowest thread
+/// after each tile. With powers of two, the number of dispatches does not depend on the number of threads.
 PixelGroups pixel_groups_of(const gpu::DeviceTraits& traits)
 {
     if (!traits.is_cpu) return {.width = 8, .layers = 1, .tile = {128, 128}};
     return {.width = 16, .layers = std::min(std::bit_ceil(traits.cpu_threads), 64u), .tile = {256, 256}};
 }
 
-/// Opacity of a preview hidden by something else, and opacity of a preview in slices.
+/// Opacity of previewed voxels behind other things, and of previewed voxels in slices.
 constexpr float PREVIEW_SHARE = 0.55f, PREVIEW_SLICE_SHARE = 0.7f;
 
 RaycastOcclusion raycast_occlusion(Resource values, const OcclusionSettings& settings)
@@ -33,7 +33,7 @@ RaycastOcclusion raycast_occlusion(Resource values, const OcclusionSettings& set
     const std::vector<OcclusionPoint>& points = settings.mapping;
     if (points.empty()) return occlusion;
     constexpr double NARROWEST = 1e-6;  // a step
-    // With a single point, both ends of the segment are equal.
+    // A curve with a single point becomes one segment whose two ends are equal.
     for (size_t i = 0; i + 1 < std::max<size_t>(points.size(), 2); ++i) {
         const OcclusionPoint &from = points[i], &to = points[std::min(i + 1, points.size() - 1)];
         occlusion.segments.push_back({float(from.arrives), float(1.0 / std::max(to.arrives - from.arrives, NARROWEST)),
@@ -55,7 +55,7 @@ PageView page_view(const Look& look, const Shot& shot, const PicturePart& part)
             .shown = part.always_shown};
 }
 
-/// Data shared by the eyes of a shot.
+/// Data that both eyes of a stereo shot share.
 struct Prepared {
     VolumeBinding volume;
     RaycastInput input;  ///< complete except for the surfaces
@@ -105,7 +105,7 @@ std::optional<Resource> draw_surfaces(FrameGraph& graph, Scene& scene, const Pre
     return surfaces(graph, wanted);
 }
 
-/// Whether objects behind the probe's ball are drawn, too. Two pictures are then mixed.
+/// Returns whether objects behind the probe's ball are visible through it. If so, two pictures are drawn and mixed.
 bool is_translucent(const std::optional<ProbeLook>& probe)
 {
     return probe && probe->ball_share > 0.0 && probe->ball_opacity > 0.0 && probe->ball_opacity < 1.0;
@@ -141,8 +141,8 @@ PreviewSeen draw_preview(FrameGraph& graph, const RaycastInput& input, const Ray
     return preview(graph, wanted);
 }
 
-/// Draws the volume and its contents. A preview is computed before the rays, so that rays end at it, and then drawn
-/// over the picture.
+/// Draws the volume and its contents. A preview is computed before the volume's rays are cast, so that rays can end at
+/// previewed voxels, and is then drawn over the picture.
 Resource draw_contents(FrameGraph& graph, Scene& scene, Prepared& prepared, RaycastInput input, const Camera& camera,
                        const PicturePart& part, Resource target, const WaitingRays* rays, size_t which)
 {
@@ -167,7 +167,7 @@ Resource draw_contents(FrameGraph& graph, Scene& scene, Prepared& prepared, Rayc
                          .share = input.slice ? PREVIEW_SLICE_SHARE : PREVIEW_SHARE});
 }
 
-/// Draws through a translucent ball: mixes a picture with an opaque ball and a picture without the ball.
+/// Draws a translucent ball of the probe: mixes a picture with an opaque ball and a picture without the ball.
 Resource draw_through_ball(FrameGraph& graph, Scene& scene, Prepared& prepared, const RaycastInput& input,
                            const Camera& camera, const PicturePart& part, Resource target, const WaitingRays* rays,
                            size_t eye)

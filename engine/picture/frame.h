@@ -28,15 +28,15 @@
 
 namespace shvr {
 
-/// A rectangle of a picture, and where it is drawn.
+/// A rectangle of a picture, and the texel of the target image at which it is drawn.
 struct PicturePart {
     glm::uvec2 pixels{0};         ///< size of the whole picture
     glm::uvec2 begin{0}, end{0};  ///< the pixels that are drawn
     glm::uvec2 target{0};         ///< texel that `begin` is drawn to
     glm::uvec2 detail_pixels{0};  ///< picture size that determines the bricks' level of detail; 0: `pixels`
     std::optional<ProbeLook> probe{};
-    /// Voxels whose paged bricks the view always needs, even if the transfer function hides them: a shell may lie where
-    /// nothing else is visible (voxels_of_shell). All parts of a view have the same box.
+    /// A box whose paged bricks the view always needs, even if the transfer function hides their voxels: the probe's
+    /// shell may be drawn where nothing else is visible (voxels_of_shell). The box is the same for all parts of a view.
     std::optional<VoxelBox> always_shown{};
 };
 
@@ -59,44 +59,44 @@ private:
 /// Number of ray-cast pictures per shot: one per eye; twice as many with a translucent ball of the probe.
 int pictures_of(const Shot& shot, const std::optional<ProbeLook>& probe);
 
-/// The result of adding a part to a graph: the target's new version, and the feedback that the volume gets when the
-/// graph is done.
+/// Result of adding a part's passes to a graph: the target's new version, and feedback about visited bricks, which the
+/// volume receives once the graph has run.
 struct Drawn {
     Resource target;
     DeviceVolume::Feedback feedback;
 };
 /// Adds the passes that draw a part of a shot into `target`, an rgba32_float picture: linear light, premultiplied, over
-/// the background. The graph must be submitted before any graph made later. `waiting`: rays resume where the previous
-/// graph left them waiting for bricks; the part must be the same, and the volume must let rays wait. If `waiting` is
-/// null, the volume no longer lets rays wait.
+/// the background. The graph must be submitted before any graph made later. `waiting`: rays continue from the missing
+/// bricks at which the previous graph left them; this requires the same part, and a volume that lets rays wait. If
+/// `waiting` is null, the volume is switched to rays that do not wait.
 Drawn draw(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, const PicturePart& part,
            Resource target, bool count_work = false, WaitingRays* waiting = nullptr);
-/// Returns a graph with the preparation shared by all parts of a shot, whatever their size: tables, directory,
-/// surfaces. It must be submitted before any graph made later. Optional: draw() also makes this preparation.
+/// Returns a graph of the preparation that all parts of a shot share, whatever their size: tables, directory, surfaces.
+/// Submit it before any graph made later. Calling this function is optional: draw() prepares what is missing.
 FrameGraph prepared(Scene& scene, const Look& look, const Shot& shot, const PicturePart& part);
 /// Adds the passes that find the visible point at one pixel. Returns a one-texel image: the point's position and 1, or
 /// 0 if no point is visible.
 Resource pick(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, const PicturePart& part);
 
-/// Number of drawn rays that stopped before their end without meeting anything opaque. Their pixels are wrong.
+/// Number of drawn rays that stopped early, before their end and before anything opaque. Their pixels are wrong.
 uint64_t rays_cut_short(const std::vector<gpu::PassReport>& passes);
-/// Returns a sentence that warns about rays cut short.
+/// Returns the sentence that warns the user about rays that stopped early.
 std::string cut_short_sentence(uint64_t rays, const Look& look);
 
-/// Whether draw() of a part, or look_at(), would return without waiting for the list of the view's bricks. If not,
-/// listing starts in the background, and the caller should ask again.
+/// Returns whether draw() and look_at() could run without waiting for the list of bricks that the view needs. If they
+/// could not, starts making the list in the background; call again later.
 bool get_ready(Scene& scene, const Look& look, const Shot& shot, const PicturePart& part);
-/// Sets the volume's view, as draw() does. Returns the sample distance in reference lengths, which is larger for coarse
-/// bricks.
+/// Sets the volume's view, as draw() does. Returns the distance between samples, in reference lengths; it is larger if
+/// the view uses coarse bricks.
 double look_at(Scene& scene, const Look& look, const Shot& shot, const PicturePart& part);
 
-/// Returns one short graph of work that must precede drawing parts of this look; null when all is ready. Optional:
-/// without these calls, the first draw() does all this work. The graph must be submitted before the next call.
+/// Returns one short graph of work that must precede drawing parts of this look; null if none is left. Submit the graph
+/// before the next call. Calling this function is optional: the first draw() does all work that is left.
 std::optional<FrameGraph> next_preparation(Scene& scene, const Look& look);
-/// Like next_preparation(), for idle time: work that makes later pictures faster without changing them.
+/// Like next_preparation(), but for idle time: work that makes later pictures faster without changing them.
 std::optional<FrameGraph> next_refinement(Scene& scene, const Look& look);
-/// Like next_preparation(), for the next slice of the look's ambient occlusion, nearest to the camera first; null if
-/// the look uses none or all is done. Pictures are drawn with the occlusion available so far.
+/// Like next_preparation(), but returns the next slice of the look's ambient occlusion, nearest to the camera first;
+/// null if the look has no occlusion or all of it is computed. Pictures use the occlusion computed so far.
 std::optional<FrameGraph> next_occlusion(Scene& scene, const Look& look, const Camera& camera,
                                          const Occlusion::Most& most);
 

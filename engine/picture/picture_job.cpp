@@ -12,7 +12,7 @@ namespace shvr {
 
 namespace {
 
-/// Adds up the costs of a picture's parts, pass by pass.
+/// Adds the costs of a part's passes to the costs of the same passes of the picture.
 void append(std::vector<gpu::PassReport>& sum, std::vector<gpu::PassReport> passes)
 {
     for (gpu::PassReport& pass : passes) {
@@ -37,15 +37,15 @@ void append(std::vector<gpu::PassReport>& sum, std::vector<gpu::PassReport> pass
 
 /// Bytes per pixel of a picture's read-back.
 constexpr uint64_t PIXEL_BYTES = 4 * sizeof(float);
-/// Maximum host memory for the band being drawn; another band may still be in the process of being written.
+/// Maximum host memory of the band being drawn; the previous band may still be in memory, while it is being written.
 constexpr uint64_t MAX_BAND_BYTES = uint64_t{32} << 20;
-/// Device memory in addition to a part's own images: tables and the directory of bricks.
+/// Device memory that drawing needs in addition to a part's own images: tables and the directory of bricks.
 constexpr uint64_t BESIDE_PARTS = uint64_t{8} << 20;
 
-/// Maximum size in pixels of a part drawn by rays that wait; their state takes WaitingRays::PIXEL_BYTES per pixel.
+/// Maximum area, in pixels, of a part whose rays wait for bricks: a ray's state takes WaitingRays::PIXEL_BYTES.
 constexpr uint64_t MAX_WAITING_PIXELS = 64 * 64;
 
-/// Device bytes per pixel of a part, as frame.cpp allocates images.
+/// Returns the device bytes per pixel of a part, for the images that frame.cpp allocates.
 uint64_t device_bytes_per_pixel(const Scene& scene, const Shot& shot, const std::optional<ProbeLook>& probe)
 {
     constexpr uint64_t LISTED_BYTES = SURFACE_TILE_BYTES / (gpu::SURFACE_TILE * gpu::SURFACE_TILE);
@@ -60,7 +60,7 @@ uint64_t device_bytes_per_pixel(const Scene& scene, const Shot& shot, const std:
     return PIXEL_BYTES + (shot.right_eye ? 2 * (PIXEL_BYTES + of_eye) : of_eye);
 }
 
-/// Splits some rows of a pane into parts, in reverse order: the first part to draw comes last.
+/// Splits rows of a pane into parts of at most `side` pixels, in reverse order: the first part to draw comes last.
 std::vector<PicturePart> parts_of(const PicturePart& whole, const PixelBox& rows, uint32_t side)
 {
     std::vector<PicturePart> parts;
@@ -139,7 +139,7 @@ void PictureJob::begin_band()
     band_begin_ = band_end_;
     band_end_ = std::min(band_begin_ + band_rows_, size_.y);
     const size_t values = size_t(size_.x) * (band_end_ - band_begin_) * 4;
-    // While a band is drawn, the receiver may still hold the previous band; a part's pixels are copied once more.
+    // Counts the band being drawn and the previous one, which the receiver may still hold, and one copied part.
     constexpr uint64_t BANDS = 2;
     renderer_.note_picture_bytes(BANDS * values * sizeof(float) +
                                  PIXEL_BYTES * options_.part_pixels * std::min(options_.part_pixels, band_rows_));
@@ -149,7 +149,7 @@ void PictureJob::begin_band()
     if (parts_.empty()) end_band();  // when no pane covers these rows
 }
 
-/// Lists the parts of the current pane within the band; if it has none there, those of the next pane that has any.
+/// Lists the parts in which the current pane meets the band; if it does not, those of the next pane that does.
 void PictureJob::begin_parts()
 {
     for (; pane_ < panes_.size(); ++pane_) {
@@ -167,7 +167,7 @@ void PictureJob::begin_parts()
     }
 }
 
-/// Returns the largest side with which memory holds two parts, because parts at borders have images of their own.
+/// Returns the largest side of parts at which two parts fit in memory: parts at borders need images of another size.
 uint32_t PictureJob::part_side()
 {
     gpu::Memory& memory = renderer_.memory();
@@ -180,7 +180,7 @@ uint32_t PictureJob::part_side()
     };
     static_cast<void>(!pane().shot.is_slice && scene().has_occlusion(look_));  // allocates its memory
     if (fits(BESIDE_PARTS)) return uint32_t(side);
-    // Allocates the data that every part size needs, so that the remaining memory is known.
+    // Allocates the data that parts of every size need, so that the remaining memory becomes known.
     renderer_.executor().run(
         prepared(
             scene(), look_, pane().shot,
@@ -191,7 +191,7 @@ uint32_t PictureJob::part_side()
     return uint32_t(side);
 }
 
-/// Draws lines over the band and delivers it.
+/// Draws the overlay (outline of the probe, box of the cutting planes) over the finished band, and delivers the band.
 void PictureJob::end_band()
 {
     catch_up();
@@ -202,14 +202,14 @@ void PictureJob::end_band()
     renderer_.note_picture_bytes(0);
 }
 
-/// Loads the requested bricks. Returns false if some are still to come and `waits` is false.
+/// Loads the requested bricks. If `waits` is false, returns false while some of them are still being read.
 bool PictureJob::load(const Progress& progress, bool waits)
 {
     scene().advance(waits, progress);
     return waits || scene().volume().state() != DeviceVolume::State::loading;
 }
 
-/// Loads the bricks from which light arrives, as many as there are slots for.
+/// Loads as many of the bricks around the visited ones as slots allow: ambient light on visited bricks depends on them.
 bool PictureJob::load_around(const Progress& progress, bool waits)
 {
     if (pane().shot.is_slice || !scene().has_occlusion(look_)) return true;
@@ -217,8 +217,8 @@ bool PictureJob::load_around(const Progress& progress, bool waits)
     return load(progress, waits);
 }
 
-/// Completes the ambient occlusion of the look, as far as the loaded bricks allow. Returns false if more remains to be
-/// done and `waits` is false.
+/// Brings the look's ambient occlusion up to date, as far as the loaded bricks allow. If `waits` is false, returns
+/// false while work remains.
 bool PictureJob::renew_occlusion(const Progress& progress, bool waits)
 {
     constexpr Occlusion::Most MOST{.bricks = gpu::OCCLUSION_SLICE, .cell_bricks = 512};
@@ -235,7 +235,7 @@ bool PictureJob::renew_occlusion(const Progress& progress, bool waits)
     return true;
 }
 
-/// Progress of a part drawn for the nth time. The number of rounds is unknown, so each counts as half of the rest.
+/// Returns the progress of a part in its nth round. The number of rounds is unknown: each takes half of the remainder.
 Progress PictureJob::progress_of(const PicturePart& part, int round)
 {
     if (!options_.progress) return {};
@@ -252,7 +252,7 @@ void PictureJob::step(bool waits)
     SHVR_CHECK(!is_done());
     const PicturePart part = rounds_ ? rounds_->part : parts_.back();
     if (!rounds_) parts_.pop_back();
-    // Draws ahead on a GPU only: a CPU also copies the pixels, so drawing ahead would only cost memory.
+    // Draws ahead on GPUs only: a CPU device also copies the pixels, so drawing ahead would only take more memory.
     const bool is_paged = scene().volume().counts().has_value(), is_ahead = !is_paged && !scene().traits().is_cpu;
     try {
         if (is_ahead)
@@ -274,7 +274,7 @@ void PictureJob::step(bool waits)
     if (parts_.empty()) end_band();
 }
 
-/// Called if memory is short: frees ambient light, or else splits the part. Returns false if it can do neither.
+/// Reacts to a lack of memory: frees ambient occlusion or else splits the part. Returns false if neither is possible.
 bool PictureJob::has_given_way(const PicturePart& part, const std::string& why)
 {
     if (scene().give_way(why)) {
@@ -300,7 +300,7 @@ PictureJob::UnderWay PictureJob::begin(const PicturePart& part, WaitingRays* wai
                                                 .serialize = options_.serialize})};
 }
 
-/// Copies the pixels of the part, and reports the visited bricks to the volume.
+/// Copies the part's pixels into the band, and tells the volume which bricks were visited.
 std::vector<gpu::PassReport> PictureJob::take(UnderWay part)
 {
     gpu::FrameResult result = part.submission.finish();
@@ -310,7 +310,7 @@ std::vector<gpu::PassReport> PictureJob::take(UnderWay part)
     const size_t row_bytes = size_t(size.x) * 4 * sizeof(float);
     for (uint32_t y = 0; y < size.y; ++y, row += row_bytes)
         std::memcpy(&band_.rgba[4 * (origin.x + size_t(size_.x) * (origin.y - band_begin_ + y))], row, row_bytes);
-    // If two parts are in flight, the time during which both are drawn counts once.
+    // While two parts are in flight, their drawing times overlap; the overlap counts only once.
     const double now_ms =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
     picture_.wall_ms += std::min(result.wall_ms, now_ms - last_taken_ms_.value_or(-HUGE_VAL));
@@ -323,8 +323,8 @@ std::vector<gpu::PassReport> PictureJob::draw(const PicturePart& part, WaitingRa
     return take(begin(part, waiting));
 }
 
-/// Draws a part that is complete after one drawing, and copies the previous part once the device has received this one.
-/// Waits for the first part to finish, because its time determines how the others are divided.
+/// Draws a part that one drawing completes, and copies the previous part's pixels while the device draws this one.
+/// Waits for the picture's very first part, whose time determines how the others are divided.
 void PictureJob::draw_ahead(const PicturePart& part)
 {
     look_at(scene(), look_, pane().shot, part);
@@ -347,11 +347,11 @@ void PictureJob::catch_up()
     finish(part, take(std::move(last)));
 }
 
-/// Draws a part with all bricks that its rays visit, or splits it. Returns false if the next step continues it.
+/// Draws a part with all bricks that its rays visit, or splits the part. Returns false if the next step continues it.
 bool PictureJob::draw_completely(const PicturePart& part, bool waits)
 {
     DeviceVolume& volume = scene().volume();
-    // Other callers may have set the view since the last step. The drawing is then stale, and is repeated.
+    // Other callers may have set another view since the last step, which made the drawing stale: set the view again.
     look_at(scene(), look_, pane().shot, part);
     if (!rounds_) {
         if (area_of(part) != PixelBox{glm::uvec2(0), part.pixels}.area()) volume.forget_visits();
@@ -374,7 +374,7 @@ bool PictureJob::draw_completely(const PicturePart& part, bool waits)
     return true;
 }
 
-/// Draws the part of `rounds_` until all bricks that its rays visit are on the device, or no slots are left for them.
+/// Draws the part in `rounds_` repeatedly, until the device has all bricks that its rays visit or has no slots left.
 bool PictureJob::draw_rounds(bool waits)
 {
     using State = DeviceVolume::State;
@@ -388,7 +388,7 @@ bool PictureJob::draw_rounds(bool waits)
             rounds_->is_drawn = true;
         }
         if (!load(progress, waits)) return false;
-        // Bricks visited again may have been lit when there were no slots for the bricks around them.
+        // Revisited bricks may have been lit when there were no slots for the bricks around them: load these now.
         if (!load_around(progress, waits)) return false;
         rounds_->is_drawn = false;
         if (volume.state() == State::limited) return true;
@@ -405,9 +405,9 @@ void PictureJob::begin_waiting()
     rounds_->waits_for_light = !pane().shot.is_slice && scene().has_occlusion(look_);
 }
 
-/// Draws a part whose rays need more bricks than fit. Every round loads as many as fit of the bricks that rays wait
-/// for, nearest first. So at least one ray advances, and rays pass bricks from near to far. If others have drawn since
-/// the last step, the list of awaited bricks is determined again.
+/// Draws a part whose rays need more bricks than fit. Every round loads the awaited bricks nearest to the camera, as
+/// many as fit. So at least one ray advances in each round, and each ray passes bricks from near to far. If other
+/// callers have drawn since the last step, the list of awaited bricks is determined again.
 bool PictureJob::draw_waiting(bool waits)
 {
     DeviceVolume& volume = scene().volume();
@@ -418,7 +418,7 @@ bool PictureJob::draw_waiting(bool waits)
             append(rounds_->passes, draw(rounds_->part, &*rounds_->rays));
             if (!volume.has_rays_waiting()) return true;
             if (rounds_->waits_for_light && !volume.limit_visits(scene().occlusion().reach())) {
-                // Without progress, rays continue with the light available so far.
+                // If no ray can advance, rays continue with the light so far; the picture is incomplete.
                 note_limited();
                 volume.let_rays_wait(false);
                 volume.want_around({});
@@ -432,7 +432,7 @@ bool PictureJob::draw_waiting(bool waits)
     }
 }
 
-/// Reports that the light of one brick needs more bricks than fit.
+/// Warns that the ambient light of a single brick needs more bricks than fit.
 void PictureJob::note_limited()
 {
     picture_.complete = false;

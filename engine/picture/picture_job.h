@@ -30,16 +30,16 @@ public:
     /// drawn by rays that wait for bricks. For a resident volume on a GPU, waits only for the previous part, so that
     /// the device stays busy while the previous part's pixels are copied. Delivers the rows of each finished band.
     ///
-    /// If `waits` is false, does not wait for bricks that are being read. The next step then continues with the part;
-    /// other callers may set the volume's view and draw in between.
+    /// If `waits` is false, does not wait for bricks that are being read: the next step continues the same part; other
+    /// callers may set the volume's view and draw in between.
     void step(bool waits = true);
-    /// Whether the last step left a part unfinished, because its bricks or its light are still to come.
+    /// Whether the last step left a part unfinished, because its bricks or its ambient light are not available yet.
     bool is_waiting() const { return rounds_.has_value(); }
     /// The fraction of all pixels drawn so far.
     double progress() const { return double(drawn_pixels_) / double(uint64_t(size_.x) * size_.y); }
-    /// Whether the parts drawn so far are complete.
+    /// Whether all parts drawn so far are complete (Picture::complete).
     bool is_complete() const { return picture_.complete && !scene().occlusion_has_no_room() && rays_cut_short_ == 0; }
-    /// The picture without its image. Call it after the last step.
+    /// Returns the picture without its image, whose rows were delivered. Call it after the last step.
     Picture take();
 
 private:
@@ -86,14 +86,14 @@ private:
     uint32_t band_begin_ = 0, band_end_ = 0;  ///< rows of the picture
     ImageF band_;
     size_t pane_ = 0;
-    std::vector<PicturePart> parts_;  ///< parts of the pane within the band still to be drawn; the next one comes last
-    /// A part that is drawn until no brick is missing.
+    std::vector<PicturePart> parts_;  ///< undrawn parts of this pane and band; the next one to draw comes last
+    /// A part that is drawn repeatedly, until no brick is missing.
     struct Rounds {
         PicturePart part;
-        int round = 0;          ///< each round renews the part's light, draws the part, and loads its bricks
-        bool is_drawn = false;  ///< whether the part is drawn in this round
+        int round = 0;          ///< each round updates the part's ambient light, draws the part, and loads bricks
+        bool is_drawn = false;  ///< whether the part was already drawn in this round
         std::vector<gpu::PassReport> passes{};
-        /// The state of rays that wait for bricks or, if `waits_for_light`, also for the light of bricks.
+        /// State of the rays that wait for bricks and, if `waits_for_light`, also for the ambient light of bricks.
         std::optional<WaitingRays> rays{};
         bool waits_for_light = false;
     };

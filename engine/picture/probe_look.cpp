@@ -47,7 +47,7 @@ std::optional<VoxelBox> voxels_of_shell(const std::optional<ProbeLook>& probe, c
 {
     if (!probe || !probe->shell) return std::nullopt;
     const glm::dvec3 middle = probe->center / volume.spacing, reach = probe->radius / volume.spacing;
-    // The box is extended to whole bricks, so that small moves of the probe need the same bricks as before.
+    // Extends the box to whole bricks, so that small motions of the probe do not change which bricks are needed.
     const int64_t side = gpu::BRICK_SIZE;
     const Size3 lower = glm::max(Size3(glm::floor(middle - reach)), Size3(0)) / side;
     const Size3 upper = (Size3(glm::ceil(middle + reach)) + side - int64_t{1}) / side;

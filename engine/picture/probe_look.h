@@ -1,6 +1,6 @@
 #pragma once
-// How pictures show the probe: a ball, a shell around it, and the voxels that its brush would change. Plain values; any
-// thread.
+// Appearance of the probe in pictures: a ball, a shell around it, and the voxels that its brush would change. Plain
+// values; any thread.
 
 #include <memory>
 #include <optional>
@@ -18,7 +18,7 @@ struct ShellLook {
     bool operator==(const ShellLook&) const = default;
 };
 
-/// The drawn parts of the probe: a ball that ends rays, and a shell.
+/// The parts of the probe that are drawn: a ball, which ends rays, and a shell.
 struct ProbeLook {
     glm::dvec3 center{0.0};     ///< volume space
     double radius = 1.0;        ///< radius of the probe's region, physical units
@@ -27,20 +27,20 @@ struct ProbeLook {
     double ball_opacity = 1.0;  ///< opacity of the ball's surface
     std::optional<ShellLook> shell;
     std::shared_ptr<const PaintPreview>
-        preview;  ///< voxels that its brush would change, also shown in slices; null: not shown
-    bool has_silhouette = true, has_arrow = true;  ///< lines drawn over the picture, if it has such lines
+        preview;  ///< voxels that the probe's brush would change, also shown in slices; null: not shown
+    bool has_silhouette = true, has_arrow = true;  ///< lines over the picture, which callers may omit for all probes
     bool operator==(const ProbeLook&) const = default;
     /// Returns the radius of a ball that encloses all drawn parts. `spacing`: the volume's.
     double reach(const glm::dvec3& spacing) const;
 };
 /// Radius of the ball inside a shell, as a share of `radius`, small enough not to hide the shell.
 inline constexpr double BALL_IN_SHELL = 0.12;
-/// Returns the probe's own colour, or its group's colour; grey if it erases.
+/// Returns the colour that the session gives the probe, or else the colour of its group; grey if the brush erases.
 glm::dvec3 probe_color(const Session& session, uint8_t group);
-/// How pictures of a session show its probe.
+/// Returns the probe as pictures of the session show it; null if they show none.
 std::optional<ProbeLook> shown_probe(const Session& session, const VolumeInfo& volume,
                                      const VolumeStatistics& statistics);
-/// The voxels around a probe's shell, which is drawn even where the function hides voxels; null without a shell.
+/// Returns the voxels around the probe's shell, which is drawn even in hidden voxels; null if there is no shell.
 std::optional<VoxelBox> voxels_of_shell(const std::optional<ProbeLook>& probe, const VolumeInfo& volume);
 
 }  // namespace shvr

@@ -12,7 +12,7 @@ double reference_length(const VolumeInfo& info)
     return std::min({info.spacing.x, info.spacing.y, info.spacing.z});
 }
 
-/// The direction towards the light in volume space. Lights move with the camera.
+/// Returns the direction towards the light in volume space. The light is fixed to the camera, and moves with it.
 glm::dvec3 light_direction(const Light& light, const Camera& camera)
 {
     const glm::dvec3 over_the_shoulder(0.3, 0.5, 1.0);
@@ -23,7 +23,7 @@ glm::dvec3 light_direction(const Light& light, const Camera& camera)
     return glm::normalize(local.x * right + local.y * up + local.z * back);
 }
 
-/// Returns a colour brighter than the resulting paint, or a warning colour where paint would be removed.
+/// Returns a brighter version of the colour that paint would have, or a warning colour if the brush removes paint.
 glm::dvec3 preview_color(const ProbeLook& probe)
 {
     constexpr glm::dvec3 WARNING(1.0, 0.52, 0.0), RAISED(0.2, 0.85, 0.95);

@@ -1,5 +1,5 @@
 #pragma once
-// Parameters of the kernels that trace rays, from a look, a camera and a probe. Computed in double; pure functions.
+// Computes the parameters of the kernels that trace rays from a look, a camera and a probe, in double. Pure functions.
 
 #include "engine/device/scene.h"
 #include "engine/passes/preview.h"

@@ -20,7 +20,7 @@ using gpu::DeviceLost;
 
 struct RenderOptions {
     std::optional<ProbeLook> probe;
-    bool outlines_probe = false;  ///< outlines the probe over whatever hides it; draws an arrow if it is out of sight
+    bool outlines_probe = false;  ///< outlines the probe even where it is hidden; draws an arrow if it is out of sight
     bool count_work = false;      ///< keeps the exact work counters (a little slower)
     bool serialize = false;       ///< a full barrier between passes
     bool timestamps = true;
@@ -43,8 +43,8 @@ class Renderer {
 public:
     struct Options {
         gpu::DeviceOptions device;
-        /// Half of the host bytes (0: 2 GiB) are for mapped memory, a quarter for bricks kept on the host, and a
-        /// quarter for coarser levels made in memory for files without levels.
+        /// Memory limits. Of the host bytes (0: 2 GiB), half are for mapped memory, a quarter for bricks cached on the
+        /// host, and a quarter for coarser levels, which are made in memory for files without levels.
         gpu::Budget budget;
         int threads = 0;  ///< workers that build bricks; 0: one per core
     };
@@ -56,35 +56,35 @@ public:
     /// Re-creates a lost device, without a scene. All objects of the old device must have been released: storages,
     /// submissions and the window's objects. On failure there is no device: try again, or terminate.
     void restart();
-    /// The host's part of the budget, in bytes.
+    /// Returns the host's part of the memory budget, in bytes.
     uint64_t host_budget() const { return host_budget_; }
-    /// Host bytes in use: mapped memory, bricks kept on the host, and a picture that is being made.
+    /// Returns the host bytes in use: mapped memory, bricks cached on the host, and the picture being rendered.
     uint64_t host_bytes() const;
     uint64_t peak_host_bytes() const;
-    /// Reports the host bytes of the picture being rendered, for host_bytes().
+    /// Notes how many host bytes the picture being rendered takes, for host_bytes().
     void note_picture_bytes(uint64_t bytes);
 
     /// Replaces the scene by a scene of this volume. The `settings` for sampling and paging decide how the device
     /// stores the bricks. `with_occlusion`: reserves memory for ambient occlusion. On failure the previous scene stays
-    /// if both scenes fit in memory together; otherwise the previous scene was destroyed first, and there is none.
+    /// if memory has room for both scenes; if not, the previous scene was destroyed first, and no scene is loaded.
     void load(std::shared_ptr<const VolumeSource> source, const VolumeStatistics& statistics,
               const RenderSettings& settings = {}, bool with_occlusion = false, const Progress& progress = {});
-    /// Starts loading a scene in time slices, for a loop that keeps running: a second scene if fits_beside() returns
-    /// true, or the only one after take_scene(). Once its load_on() is done, call show(). `document`: the annotation
-    /// that the scene will show. The source should already have its levels (with_levels), or they are made here.
+    /// Starts loading a scene in time slices, for a loop that must keep running: as a second scene if fits_beside() is
+    /// true, otherwise as the only scene, after take_scene(). Once the scene's load_on() is done, call show().
+    /// `document`: the annotation to show. Coarser levels (with_levels) are made here if the source lacks them.
     std::unique_ptr<Scene> begin_loading(std::shared_ptr<const VolumeSource> source, const VolumeStatistics& statistics,
                                          const RenderSettings& settings, bool with_occlusion, const Document& document);
     bool fits_beside(const VolumeSource& source, const RenderSettings& settings, bool with_occlusion);
-    /// Returns the source; adds coarser levels, reading it once, if it would be paged and has too few. Any thread.
+    /// Returns the source. If it would be paged and has too few coarser levels, adds them, reading it once. Any thread.
     std::shared_ptr<const VolumeSource> with_levels(std::shared_ptr<const VolumeSource> source,
                                                     const RenderSettings& settings, bool with_occlusion,
                                                     const Progress& progress = {}) const;
-    /// Memory needed to load the source while nothing else is loaded. Reads no voxels. Any thread.
+    /// Returns the memory needed to load the source while nothing else is loaded. Reads no voxels. Any thread.
     SceneEstimate estimate(const VolumeSource& source, const RenderSettings& settings, bool with_occlusion) const;
     /// Removes the scene and returns it; null if there was none.
     std::unique_ptr<Scene> take_scene() { return std::move(scene_); }
     std::unique_ptr<Scene> show(std::unique_ptr<Scene> scene) { return std::exchange(scene_, std::move(scene)); }
-    /// Fails if the sizes alone already imply that load() would fail; reads no voxels.
+    /// Fails if load() is certain to fail because of the volume's size. Reads no voxels.
     void check_sizes(const VolumeSource& source, const RenderSettings& settings, bool with_occlusion);
     Scene& scene() const;
     DeviceVolume& volume() const { return scene().volume(); }
