@@ -19,7 +19,7 @@ constexpr int64_t APRON = gpu::BRICK_APRON;
 constexpr int64_t TEXELS = gpu::BRICK_TEXELS;
 constexpr size_t CELLS = gpu::BRICK_CELLS;
 constexpr size_t CELL_STEP = gpu::CELL_SIZE;
-constexpr size_t CELL_REACH = gpu::CELL_SIZE + 2;  ///< texels per axis that a sample in a cell can touch
+constexpr size_t CELL_REACH = gpu::CELL_SIZE + 2;  ///< texels along each axis that samples in a cell can read
 /// Number of bricks along x that a worker builds in one task: 5 MiB of texels.
 constexpr int64_t ROW_BRICKS = 64;
 /// Number of slices that a worker reads in one task.
@@ -27,7 +27,7 @@ constexpr int64_t READ_SLICES = 4;
 
 // ---- Cell ranges ----------------------------------------------------------------------------------------------------
 
-/// Eight codes at once; every x86-64 and ARM64 processor has such registers (GCC's and Clang's vector extension).
+/// Eight codes in one register, which every x86-64 and ARM64 processor has (GCC's and Clang's vector extension).
 using Lanes [[gnu::vector_size(16)]] = uint16_t;
 constexpr size_t LANES = 8;
 constexpr size_t ROW_PITCH = 40;  ///< TEXELS rounded up to LANES
@@ -39,7 +39,7 @@ Lanes load(const uint16_t* codes)
     return lanes;
 }
 
-/// Computes minimum and maximum code of each column over CELL_REACH rows, `pitch` apart. `length`: multiple of LANES.
+/// Computes each column's minimum and maximum code over CELL_REACH rows (`pitch` apart). LANES divides `length`.
 void reduce_rows(const uint16_t* low, const uint16_t* high, size_t pitch, size_t length, uint16_t* minimum,
                  uint16_t* maximum)
 {
@@ -57,7 +57,7 @@ void reduce_rows(const uint16_t* low, const uint16_t* high, size_t pitch, size_t
     }
 }
 
-/// Reduces one axis after the other: z, then y, then x, so that the long loops run over adjacent memory.
+/// Reduces one axis after another (z, then y, then x), so that the long loops read contiguous memory.
 void find_ranges(BrickTexels& brick)
 {
     constexpr size_t SLICE = size_t(TEXELS * TEXELS);
@@ -68,7 +68,7 @@ void find_ranges(BrickTexels& brick)
         const uint16_t* const first = brick.codes.data() + z * CELL_STEP * SLICE;
         constexpr size_t EVEN = SLICE / LANES * LANES;
         reduce_rows(first, first, SLICE, EVEN, minimum_z[z], maximum_z[z]);
-        // Processes the last LANES texels of the slice; some of them were already processed.
+        // The last LANES texels of the slice overlap texels that were already processed.
         const size_t last = SLICE - LANES;
         reduce_rows(first + last, first + last, SLICE, LANES, minimum_z[z] + last, maximum_z[z] + last);
         std::fill(minimum_z[z] + SLICE, minimum_z[z] + SLICE_PITCH + LANES, uint16_t{0});
@@ -81,7 +81,7 @@ void find_ranges(BrickTexels& brick)
         for (size_t y = 0; y < CELLS; ++y) {
             alignas(64) uint16_t minimum_y[ROW_PITCH];
             alignas(64) uint16_t maximum_y[ROW_PITCH];
-            // Reads ROW_PITCH texels, more than the TEXELS of the row; the loop over x ignores the extra ones.
+            // Reads ROW_PITCH texels, more than the row's TEXELS; the loop over x ignores the excess.
             const size_t first = y * CELL_STEP * size_t(TEXELS);
             reduce_rows(minimum_z[z] + first, maximum_z[z] + first, TEXELS, ROW_PITCH, minimum_y, maximum_y);
             for (size_t x = 0; x < CELLS; ++x, ++cell) {
@@ -166,8 +166,8 @@ private:
 /// The tasks in the order in which workers start them: for each layer of bricks, first its reads, then its rows. No
 /// task waits for a later task, so workers that start tasks in this order never deadlock.
 ///
-/// Keeps two slabs: one is read while rows are built from the other. A read waits until the rows that used its slab are
-/// built; a row waits for the reads of its slab, and until `take` has freed a place in `rows_`.
+/// Keeps two slabs: one is read while rows are built from the other. A read waits until all rows of its slab's previous
+/// layer are built. A row waits for the reads of its slab, and until `take` has freed a place in `rows_`.
 class Pipeline {
 public:
     Pipeline(const VolumeSource& source, const IntensityWindow& window, int threads)
@@ -197,7 +197,7 @@ public:
         }
     }
 
-    /// Waits for the next row in order and returns it. Rethrows a worker's exception.
+    /// Waits for the next row in order and returns it. Rethrows an exception of a worker.
     const BrickRow& wait_for_row()
     {
         std::unique_lock lock(mutex_);
@@ -224,7 +224,7 @@ public:
 
 private:
     size_t place_of(int64_t row) const { return size_t(row) % rows_.size(); }
-    /// A layer shares two slices with the previous layer; those two are read once and copied.
+    /// Two slices of a layer also belong to the previous layer; they are read once and copied.
     int64_t first_new_slice(int64_t layer) const { return layer == 0 ? 0 : builder_.end_slice(layer - 1); }
     int64_t read_count(int64_t layer) const
     {
@@ -248,7 +248,7 @@ private:
 
     bool do_read(std::unique_lock<std::mutex>& lock, int64_t layer, int64_t read)
     {
-        // The shared slices are copied from the previous layer: it must be complete and stay unchanged during the copy.
+        // Shared slices are copied from the previous layer, which must be complete and not change during the copy.
         changed_.wait(lock, [&] {
             const bool slab_is_free = layer < 2 || rows_done_[size_t(layer - 2)] == rows_per_layer_;
             const bool before_is_read = layer == 0 || reads_done_[size_t(layer - 1)] == read_count(layer - 1);
@@ -305,12 +305,12 @@ private:
 
     std::mutex mutex_;
     std::condition_variable changed_;
-    int64_t layer_ = 0;  ///< layer of the next task to hand out, which is a read or a row
+    int64_t layer_ = 0;  ///< layer of the next task (a read or a row) to hand out
     int64_t task_ = 0;
     int64_t rows_taken_ = 0;
     std::vector<int64_t> reads_done_, rows_done_;  ///< by layer
     std::vector<bool> row_is_built_;               ///< by place in `rows_`
-    std::vector<BrickRow> rows_;                   ///< ring buffer: row i is at index i modulo its size
+    std::vector<BrickRow> rows_;                   ///< ring buffer: row i is at index i modulo the buffer's size
     bool is_stopped_ = false;
     std::exception_ptr failure_;
 };

@@ -13,7 +13,7 @@ std::optional<uint32_t> BrickMap::find(const BrickKey& key) const
     return entry.key == NONE ? std::nullopt : std::optional(entry.number);
 }
 
-/// Index of the brick's entry or, if the brick is missing, of the entry at which it would be inserted.
+/// Index of the brick's entry. If the map lacks the brick: index of the entry where it would be inserted.
 size_t BrickMap::place_of(const BrickKey& key) const
 {
     const uint64_t word = word_of(key);
@@ -49,7 +49,7 @@ void BrickMap::set(const BrickKey& key, uint32_t number)
     entry = {word_of(key), number};
 }
 
-/// Moves later entries, which a search could no longer reach, into the gap (Knuth, TAOCP 3, 6.4, algorithm R).
+/// Moves later entries, which searches could no longer find, into the gap (Knuth, TAOCP 3, 6.4, algorithm R).
 void BrickMap::erase(const BrickKey& key)
 {
     if (!contains(key)) return;

@@ -1,6 +1,6 @@
 #pragma once
-// Maps each brick of a set to a number: a flat hash table with linear probing, for sets of 10^5 bricks that are rebuilt
-// when a camera moves, and queried for every brick. The standard library's table, which allocates each entry, takes
+// Maps each brick of a set to a number: a flat hash table with linear probing. The sets have 10^5 bricks, are rebuilt
+// when a camera moves, and are queried for every brick. The standard library's table, which allocates each entry, takes
 // four times as long to build and nearly three times to query (engine/device/MEASURED.md). One thread.
 
 #include <optional>
@@ -39,7 +39,7 @@ private:
     size_t place_of(const BrickKey& key) const;
     void enlarge(size_t entries);
 
-    std::vector<Entry> entries_;  ///< the size is a power of two; at most half of the entries are used
+    std::vector<Entry> entries_;  ///< the size is a power of two; at least half of the entries are free
     size_t size_ = 0;
     int shift_ = 63;  ///< 64 - log2 of the number of entries
 };

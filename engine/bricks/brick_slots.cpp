@@ -34,7 +34,7 @@ void BrickSlots::use(const BrickKey& key)
     if (const std::optional<uint32_t> slot = find(key)) slots_[*slot].used = now_;
 }
 
-/// Ties go to the lowest slot, so that equal histories have equal outcomes.
+/// Ties go to the lowest slot, so that the same calls always evict the same bricks.
 void BrickSlots::list_evictable(BrickNeed below)
 {
     evictable_.clear();
@@ -46,7 +46,7 @@ void BrickSlots::list_evictable(BrickNeed below)
 
 std::optional<uint32_t> BrickSlots::next_evictable(BrickNeed below)
 {
-    // The list may be outdated: a listed brick may be needed by now, or may have been used and so be out of order.
+    // Entries may be outdated: a listed brick may now be needed, or have been used and thus be out of order.
     while (!evictable_is_stale_ && !evictable_.empty()) {
         const Slot& slot = slots_[evictable_.back().slot];
         const bool is_needed = slot.key && need_(*slot.key) != BrickNeed::none;
@@ -59,7 +59,7 @@ std::optional<uint32_t> BrickSlots::next_evictable(BrickNeed below)
     if (std::exchange(evictable_is_stale_, false)) list_evictable(BrickNeed::picture);
     if (evictable_.empty() && below > BrickNeed::picture) {
         list_evictable(below);
-        evictable_is_stale_ = true;  // because the list now contains bricks that the picture needs
+        evictable_is_stale_ = true;  // the list now contains bricks that the picture needs
     }
     if (evictable_.empty()) return std::nullopt;
     const uint32_t slot = evictable_.back().slot;

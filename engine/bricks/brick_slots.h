@@ -1,9 +1,9 @@
 #pragma once
-// Assigns bricks to a fixed number of slots, and chooses which brick to evict: the least recently used of those that
-// are not needed. Deterministic plain data: no device, no clock, no files; the owner manages the slots' contents
+// Assigns bricks to a fixed number of slots, and chooses which brick to evict: the least recently used brick that is
+// not needed. Deterministic plain data: no device, no clock, no files. The owner manages the slots' contents
 // (engine/device/paged_volume.h).
 //
-// Finding a slot takes constant time; after needs_changed() the next eviction sorts all slots. One thread.
+// Finding a slot takes constant time; after needs_changed() the next eviction sorts all slots. Used by one thread.
 
 #include <functional>
 #include <optional>
@@ -19,7 +19,7 @@ enum class BrickNeed : uint8_t { none, picture, region };
 
 class BrickSlots {
 public:
-    /// Uses slots 1 ... count - 1; slot 0 is never used. Calls `need` when it has to evict a brick.
+    /// Uses slots 1 ... count - 1; slot 0 stays unused. Calls `need` when a brick has to be evicted.
     BrickSlots(uint32_t count, std::function<BrickNeed(const BrickKey&)> need);
 
     uint32_t count() const { return uint32_t(slots_.size()); }
@@ -36,11 +36,11 @@ public:
     /// Bricks evicted so far.
     uint64_t evictions() const { return evictions_; }
 
-    /// Makes later uses count as more recent than all earlier ones.
+    /// Starts a new time step: later uses count as more recent than earlier ones.
     void tick() { ++now_; }
     void use(const BrickKey& key);
-    /// To be called if `need` may have decreased for any brick. An increased need requires no call: it is noticed when
-    /// the brick is considered for eviction.
+    /// Must be called if `need` may have decreased for any brick. Increases require no call, since they are noticed
+    /// when the brick is considered for eviction.
     void needs_changed() { evictable_is_stale_ = true; }
 
     struct Placed {
@@ -48,8 +48,8 @@ public:
         std::optional<BrickKey> evicted;  ///< the brick that previously occupied the slot
     };
     /// Places a brick that has no slot and marks it as used now. Takes a free slot, or evicts a brick that is not
-    /// needed; for a `need` of BrickNeed::region, may also evict a brick that only the picture needs. Null if no slot
-    /// can be freed. Pinned bricks are never evicted, only removed.
+    /// needed. If `need` is BrickNeed::region, may also evict a brick that only the picture needs. Null if no slot can
+    /// be freed. Pinned bricks are never evicted, only removed.
     std::optional<Placed> place(const BrickKey& key, BrickNeed need, bool is_pinned);
     void remove(const BrickKey& key);
 
@@ -72,7 +72,7 @@ private:
     std::vector<Slot> slots_;
     BrickMap placed_;
     std::vector<uint32_t> free_;
-    std::vector<Candidate> evictable_;  ///< bricks that are not needed; the next one to evict is last
+    std::vector<Candidate> evictable_;  ///< bricks that are not needed, sorted; the last one is evicted first
     bool evictable_is_stale_ = true;
     uint64_t now_ = 1;
     uint64_t evictions_ = 0;

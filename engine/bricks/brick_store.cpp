@@ -14,11 +14,11 @@ namespace shvr {
 namespace {
 
 constexpr uint64_t BRICK_BYTES = sizeof(BrickTexels);
-/// Limit on stored messages, more than a user would read; failures beyond it are still counted.
+/// Maximum number of stored messages, more than users read; later failures are still counted.
 constexpr size_t MAX_MESSAGES = 20;
 
 /// Lowers the priority of a loader thread below that of rendering: on two cores, loaders of equal priority delay the
-/// first picture. Linux sets priorities per thread. Elsewhere (POSIX has one priority per process), or if the call
+/// first picture. On Linux, each thread has a priority. Elsewhere (POSIX has one priority per process), or if the call
 /// fails, the priority stays unchanged, which costs only speed.
 void give_way()
 {
@@ -32,7 +32,7 @@ BrickStore::BrickStore(const VolumeSource& source, const IntensityWindow& window
     : source_(source), window_(window), own_maker_(source, window)
 {
     const int loaders = std::max(1, threads);
-    // The minimum, two bricks per loader: one in progress, and one that waits to be taken.
+    // At least two bricks per loader: one being loaded, and one waiting to be taken.
     max_bricks_ = std::max<uint64_t>(budget_bytes / BRICK_BYTES, 2 * uint64_t(loaders));
     for (int i = 0; i < loaders; ++i) {
         loaders_.emplace_back([this](std::stop_token stop) {
@@ -143,7 +143,7 @@ std::optional<std::string> BrickStore::failure_of(const BrickKey& key) const
     return found == failed_.end() ? std::nullopt : std::optional(found->second);
 }
 
-/// Returns the next wanted brick that is neither kept nor being loaded. The caller holds the mutex.
+/// Returns the next wanted brick that is neither stored nor being loaded. The caller holds the mutex.
 std::optional<BrickKey> BrickStore::next()
 {
     while (next_wanted_ < wanted_.size()) {

@@ -1,9 +1,9 @@
 #pragma once
 // The host tier of a volume's bricks: loader threads read, decode and cut the wanted bricks, most wanted first, and the
-// store keeps them within a byte budget. Bricks that are no longer wanted are not started. A brick that cannot be read
-// is reported once and never tried again.
+// store keeps them within a byte budget. Loaders do not start bricks that are no longer wanted. A brick that cannot be
+// read is reported once and never retried.
 //
-// One thread makes all calls (want, take, get); the store owns the loader threads.
+// One thread makes all calls (want, take, get). The store owns the loader threads.
 
 #include <atomic>
 #include <condition_variable>
@@ -29,11 +29,11 @@ public:
     struct Counts {
         uint64_t loads = 0;    ///< bricks read and cut
         uint64_t hits = 0;     ///< bricks found in the store
-        uint64_t dropped = 0;  ///< wanted bricks that became unwanted before a loader started them
+        uint64_t dropped = 0;  ///< bricks that were no longer wanted before a loader started them
         uint64_t failures = 0;
     };
 
-    /// The source must outlive the store. The budget is raised to the minimum that the loaders need.
+    /// The source must outlive the store. The budget is raised to the loaders' minimum if necessary.
     BrickStore(const VolumeSource& source, const IntensityWindow& window, uint64_t budget_bytes, int threads);
     ~BrickStore();
     BrickStore(const BrickStore&) = delete;
@@ -41,14 +41,14 @@ public:
 
     /// Sets the wanted bricks, most wanted first. Replaces the previous list.
     void want(std::vector<BrickKey> keys);
-    /// Returns up to `most` of the wanted bricks that are ready, without waiting; each brick once per call of want().
+    /// Returns up to `most` wanted bricks that are ready, without waiting; each brick once per call of want().
     std::vector<Finished> take(size_t most);
-    /// Waits until there is a brick to take; returns false if no more will arrive.
+    /// Waits until a brick can be taken; returns false if no more bricks will arrive.
     bool wait();
-    /// Returns one brick at once: if the store does not keep it, reads it on this thread. Null if it cannot be read.
+    /// Returns one brick. If the store lacks it, reads it now on this thread. Null if the brick cannot be read.
     Texels get(const BrickKey& key);
-    /// Reports that the source's voxels of these bricks have changed: drops kept copies, and repeats reads of these
-    /// bricks that are in progress. Call it after the source has changed.
+    /// Reports that the source's voxels of these bricks have changed: drops stored copies, and repeats reads of these
+    /// bricks that are in progress. Call this after the source has changed.
     void renew(std::span<const BrickKey> keys);
     /// Why a brick cannot be read; null if it can be read, or if reading was not tried.
     std::optional<std::string> failure_of(const BrickKey& key) const;
@@ -79,20 +79,20 @@ private:
     mutable std::mutex mutex_;
     std::condition_variable_any work_, finished_;
     std::vector<BrickKey> wanted_;
-    size_t next_wanted_ = 0;                              ///< index of the next brick that a loader will take
+    size_t next_wanted_ = 0;                              ///< index of the next wanted brick for a loader
     std::unordered_set<BrickKey, BrickKeyHash> untaken_;  ///< wanted, but not yet returned
     std::list<BrickKey> ready_;                           ///< in order of arrival
     std::unordered_map<BrickKey, Kept, BrickKeyHash> kept_;
     std::list<BrickKey> by_age_;  ///< keys of `kept_`, least recently used first
     std::unordered_set<BrickKey, BrickKeyHash> loading_;
-    std::unordered_set<BrickKey, BrickKeyHash> outdated_;  ///< keys in `loading_` whose bricks must be read again
+    std::unordered_set<BrickKey, BrickKeyHash> outdated_;  ///< keys in `loading_` that must be read again
     std::unordered_map<BrickKey, std::string, BrickKeyHash> failed_;
-    std::atomic<bool> has_failures_ = false;  ///< copy that avoids locking the mutex for each brick of a picture
+    std::atomic<bool> has_failures_ = false;  ///< avoids locking the mutex for each brick of a picture
     std::unordered_set<std::string> known_messages_;
     std::vector<std::string> messages_;
     Counts counts_;
     uint64_t peak_bricks_ = 0;
-    std::vector<std::jthread> loaders_;  ///< declared last: loaders stop before the members they use are destroyed
+    std::vector<std::jthread> loaders_;  ///< declared last, so loaders stop before the members they use are destroyed
 };
 
 }  // namespace shvr

@@ -10,7 +10,7 @@
 namespace shvr {
 namespace {
 
-/// Compilers vectorise a loop of known length even at -O2.
+/// Compilers vectorise loops of constant length even at -O2.
 constexpr size_t BLOCK = 64;
 
 /// Runs `convert_block(const T* voxels, uint16_t* codes)` on blocks of BLOCK voxels; the last block is padded.
@@ -27,8 +27,8 @@ void for_each_block(std::span<const std::byte> voxels, std::span<uint16_t> codes
     }
 }
 
-/// Converts exactly: voxels are clamped to the window, and the difference between a clamped voxel and the window's
-/// lower end fits in 32 unsigned bits.
+/// Converts exactly: voxels are clamped to the window, so their difference from the window's lower end fits into 32
+/// unsigned bits.
 template <class T>
 void convert_whole(std::span<const std::byte> voxels, std::span<uint16_t> codes, const IntensityWindow& window)
 {
@@ -77,7 +77,7 @@ CodeRows::CodeRows(VoxelType type, const IntensityWindow& window)
                 window.codes_per_unit == std::floor(window.codes_per_unit) && window.codes_per_unit >= 1.0 &&
                 window.codes_per_unit <= 65535.0)
 {
-    // If the whole window lies above or below every possible voxel value, its bounds do not fit the voxel type.
+    // If the whole window is outside the range of voxel values, its bounds do not fit the voxel type.
     const auto ends_within = [&]<class T>(T) {
         return window.lower <= double{std::numeric_limits<T>::max()} &&
                window.upper() >= double{std::numeric_limits<T>::min()};

@@ -30,7 +30,7 @@ double most(const glm::dvec3& normal, const Box& box)
     return -least(-normal, box);
 }
 
-/// The region that a picture's rays can reach, in physical units, and the size of a pixel in it.
+/// The region that a picture's rays can reach, in physical units, and the size of a pixel at each depth.
 class Frustum {
 public:
     Frustum(const Camera& camera, const glm::uvec2& pixels) : camera_(camera), pixels_(pixels)
@@ -40,7 +40,7 @@ public:
         const glm::dvec3 up = glm::cross(right, forward_);
         const bool is_perspective = camera_.projection == Camera::Projection::perspective;
         const double half = is_perspective ? std::tan(glm::radians(0.5 * camera_.fov_y_degrees)) : 0.5 * camera_.height;
-        // Adds one pixel on each side, so that rounding does not cut off rays at the border.
+        // Adds a pixel on each side, so that rounding cannot cut off rays at the border.
         const glm::dvec2 margin = (glm::dvec2(pixels_) + 2.0) / glm::dvec2(pixels_);
         const double half_y = half * margin.y;
         const double half_x = half * margin.x * double(pixels_.x) / double(pixels_.y);
@@ -222,7 +222,7 @@ PageTree make_page_tree(const VolumeInfo& volume, int levels, const PageView& vi
     tree.finest_level = levels - 1;
     for (const PageTree::Leaf& leaf : tree.leaves) tree.finest_level = std::min(tree.finest_level, leaf.key.level);
 
-    // The grid's cells are no smaller than the finest leaf, and few enough to be rebuilt quickly.
+    // The grid's cells are at least as large as the finest leaf, and few enough to be rebuilt quickly.
     tree.cell_shift = tree.finest_level + 5;
     const int64_t longest = std::max({volume.size.x, volume.size.y, volume.size.z});
     while ((longest - 1) >> tree.cell_shift >= int64_t{gpu::PAGE_GRID}) ++tree.cell_shift;
@@ -235,7 +235,7 @@ PageTree make_page_tree(const VolumeInfo& volume, int levels, const PageView& vi
     for (const PageTree::Leaf& leaf : tree.leaves) {
         const BrickKey& key = leaf.key;
         tree.begin_of_leaf.push_back(uint32_t(tree.entries_of_leaves.size()));
-        const int coarser = key.level + 5 - tree.cell_shift;  // log2 of the leaf's side in cells, if above 0
+        const int coarser = key.level + 5 - tree.cell_shift;  // log2 of the leaf's side, in cells of the grid
         const glm::ivec3 first = coarser > 0 ? key.brick << coarser : key.brick >> -coarser;
         const glm::ivec3 end = glm::min(coarser > 0 ? (key.brick + 1) << coarser : first + 1, glm::ivec3(tree.counts));
         for (int z = first.z; z < end.z; ++z)
@@ -267,7 +267,7 @@ void for_each_entry_below(const PageTree& tree, const BrickKey& key,
             if (tree.leaves[leaf].key.level <= key.level) visit(entry, leaf);
         }
     };
-    const int coarser = key.level + 5 - tree.cell_shift;  // log2 of the brick's side in cells of the grid
+    const int coarser = key.level + 5 - tree.cell_shift;  // log2 of the brick's side, in cells of the grid
     if (coarser < 0) {
         uint32_t entry = gpu::grid_index(glm::uvec3(key.brick >> -coarser), tree.counts);
         for (int shift = -coarser - 1; shift >= 0; --shift) {

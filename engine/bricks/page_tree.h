@@ -1,7 +1,7 @@
 #pragma once
-// Determines which bricks a picture needs: the tree of a volume's bricks, cut where they are as fine as the screen can
-// show, without bricks that are outside the view, cut away or invisible under the transfer function. Plain data,
-// computed in double on the CPU; no device.
+// Determines which bricks a picture needs: the tree of a volume's bricks, cut where the bricks are as fine as the
+// screen can show, without bricks that are outside the view, cut away or invisible under the transfer function. Plain
+// data, computed in double on the CPU; no device.
 //
 // A brick is fine enough when its voxel size along the finest axis is at most 1 / `detail` times the size of a pixel at
 // the brick's nearest point. This depends on the view alone, never on loaded bricks or a budget, so pictures under
@@ -22,7 +22,7 @@ struct PageView {
     double detail = 1.0;  ///< minimum voxels per pixel; 0: the finest level everywhere
     CutBox cut;
     bool shows_all = false;  ///< ignore the transfer function
-    /// Bricks that overlap this box are always shown.
+    /// Bricks that overlap this box are shown even if the look hides them.
     std::optional<VoxelBox> shown{};
     bool operator==(const PageView&) const = default;
 };
@@ -30,25 +30,25 @@ struct PageView {
 struct PageTree {
     struct Leaf {
         BrickKey key;
-        double depth = 0.0;  ///< depth of the brick's nearest point along the view; near bricks load first
+        double depth = 0.0;  ///< depth of the brick's nearest point in the view; near bricks load first
     };
     static constexpr uint32_t NO_LEAF = 0xffffffffu;
 
     std::vector<Leaf> leaves;  ///< nearest first
-    int finest_level = 0;      ///< the finest level of all leaves; determines the sample distance
+    int finest_level = 0;      ///< the finest level among the leaves; determines the sample distance
     int cell_shift = 5;        ///< log2 of the side of a cell of the directory's grid, in voxels
     glm::uvec3 counts{1};      ///< cells of the grid
     int depth = 0;             ///< levels of nodes below the grid
-    /// The directory of shaders/pages.h, as far as the view determines it: empty space, and the nodes. For an entry
-    /// whose `leaf_of_entry` names a leaf, the caller fills in the brick to draw.
+    /// The part of the directory (shaders/pages.h) that the view determines: empty space and nodes. For an entry that
+    /// belongs to a leaf (`leaf_of_entry`), the caller fills in the brick to draw.
     std::vector<uint32_t> entries;
     std::vector<uint32_t> leaf_of_entry;
-    /// The inverse mapping: leaf i is in `entries_of_leaves`[`begin_of_leaf`[i] ... `begin_of_leaf`[i + 1] - 1].
+    /// Entries of leaf i: `entries_of_leaves`[`begin_of_leaf`[i] ... `begin_of_leaf`[i + 1] - 1], the inverse mapping.
     std::vector<uint32_t> entries_of_leaves, begin_of_leaf;
 };
 
-/// `levels`: as VolumeSource::levels. `shows`: whether a brick, or any of the finer bricks below it, may have visible
-/// voxels. If a view needs more than `max_leaves` leaves, its detail is halved until they suffice.
+/// `levels`: as VolumeSource::levels. `shows`: whether a brick, or any finer brick below it, may have visible voxels.
+/// If a view needs more than `max_leaves` leaves, halves its detail until they suffice.
 PageTree make_page_tree(const VolumeInfo& volume, int levels, const PageView& view,
                         const std::function<bool(const BrickKey&)>& shows, size_t max_leaves = size_t{1} << 17);
 

@@ -9,11 +9,11 @@ namespace shvr {
 namespace {
 
 constexpr size_t MIN_ENTRIES = 16;
-/// Limit for cuckoo insertion: if a brick's place is taken, the occupant moves to its own other place, and so on. If
-/// half of the entries are free, few insertions move more than a dozen bricks.
+/// Limit of cuckoo insertion: if a brick's place is taken, the occupant moves to its own other place, and so on. If
+/// half of the entries are free, an insertion rarely moves more than a dozen bricks.
 constexpr int MAX_MOVES = 500;
 
-/// Inserts `brick` into `entries`, moving other bricks if needed. Returns false if MAX_MOVES moves do not suffice.
+/// Inserts `brick` into `entries`, moving other bricks if needed. Returns false if that takes over MAX_MOVES moves.
 bool insert(std::vector<PaintedBrick>& entries, PaintedBrick brick)
 {
     const uint32_t last = uint32_t(entries.size() - 1);

@@ -1,7 +1,7 @@
 #pragma once
-// Finds the slots of painted bricks when a table of all bricks would be too large: a hash table in which each brick is
-// at one of two places (cuckoo hashing, Pagh and Rodler 2004). Kernels always check both places, which takes six loads
-// and no loop.
+// Finds the slots of painted bricks when a table of all bricks would be too large. In this hash table, each brick is at
+// one of two places (cuckoo hashing, Pagh and Rodler 2004). Kernels always check both places, which takes six loads and
+// no loop.
 
 #include <cstdint>
 #include <span>
@@ -12,7 +12,7 @@
 namespace shvr {
 
 struct PaintedBrick {
-    glm::uvec3 brick;   ///< position in bricks of the mask, below 65536 along x and y
+    glm::uvec3 brick;   ///< position in the mask, in bricks; below 65536 along x and y
     uint32_t slot = 0;  ///< never gpu::NO_SLOT, which marks free entries
 };
 

@@ -68,7 +68,7 @@ std::vector<uint32_t> ThresholdBricks::bits_in(const VoxelBox& box, double thres
     if (reading_.valid()) {
         try {
             take_reading();
-        } catch (const Error&) {  // a brick that is needed now is read again later; that read reports the failure
+        } catch (const Error&) {  // a later read, if the brick is still needed, reports the failure
         }
     }
     if (kept_.size() + missing(box, threshold).size() > MAX_BRICKS) kept_.clear();
@@ -117,7 +117,7 @@ std::vector<Size3> ThresholdBricks::missing(const VoxelBox& box, double threshol
     return bricks;
 }
 
-/// Reads all bricks of a layer at once, so that a larger block of the file is not decoded again for each brick.
+/// Reads all bricks of a layer together, so that a larger block of the file is decoded only once for all of them.
 ThresholdBricks::Bricks ThresholdBricks::read(const VolumeSource& source, const std::vector<Size3>& bricks,
                                               double threshold)
 {

@@ -1,9 +1,9 @@
 #pragma once
-// One bit per voxel: whether its value in the file is at or above a threshold. Bricks of bits are read when they are
-// needed, and kept. Brushes and touch use these bits where several values share a 16-bit code (has_exact_codes,
+// One bit per voxel: whether its value in the file is at or above a threshold. Bricks of bits are read on first
+// use, and cached. Brushes and touch use these bits where several values share a 16-bit code (has_exact_codes,
 // volume.h).
 //
-// One thread owns an object; get_ready() reads on a separate thread.
+// Used by one thread; get_ready() reads on a separate thread.
 
 #include <array>
 #include <future>
@@ -24,17 +24,17 @@ public:
     ~ThresholdBricks();
     ThresholdBricks(const ThresholdBricks&) = delete;
 
-    /// Whether bits_in() would find all its bricks already read. If not, starts reading them in the background; the
+    /// Whether all bricks that bits_in() would need have been read. If not, starts reading them in the background; the
     /// caller has to ask again later. Fails if voxels cannot be read.
     bool get_ready(const VoxelBox& box, double threshold);
     /// The bits of a box inside the volume, in rows of whole words along x: bit b of word w of row (y, z) is voxel x =
     /// box.lower.x + 32 w + b. NaN is below every threshold. Reads missing bricks; fails if one cannot be read.
     std::vector<uint32_t> bits_in(const VoxelBox& box, double threshold);
-    /// Forgets the voxels in these boxes, since they have changed.
+    /// Drops the cached bits in these boxes, whose voxels have changed.
     void renew(std::span<const VoxelBox> changed);
 
 private:
-    static constexpr int64_t SIDE = 32;                    ///< voxels along each axis of a brick; a row is one word
+    static constexpr int64_t SIDE = 32;                    ///< voxels along each axis of a brick; a row fills one word
     static constexpr size_t MAX_BRICKS = size_t{1} << 12;  ///< maximum number of kept bricks: 16 MiB
     using Bits = std::array<uint32_t, SIDE * SIDE>;        ///< rows, y fastest
     struct Key {
