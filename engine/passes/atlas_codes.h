@@ -1,6 +1,6 @@
 #pragma once
-// The layout of codes in the atlas: paged bricks lie in slots, with aprons; the bricks of a resident volume lie side by
-// side, within a border (shaders/bricks.h). In every layout, kernels see the same 16-bit codes.
+// The layout of codes in the atlas. Paged bricks are in slots, with aprons; bricks of a resident volume are contiguous,
+// within a border (shaders/bricks.h). In every layout, kernels read the same 16-bit codes.
 
 #include <cstdint>
 
@@ -10,8 +10,8 @@
 namespace shvr {
 
 enum class AtlasCodes : uint8_t {
-    exact16,   ///< r32ui, two codes along x in a texel, for exact sampling
-    exact8,    ///< r32ui, four codes along x in a texel: for volumes of bytes, whose codes are multiples of 257
+    exact16,   ///< r32ui, two codes (along x) per texel, for exact sampling
+    exact8,    ///< r32ui, four codes (along x) per texel, for 8-bit volumes, whose codes are multiples of 257
     filtered,  ///< R16_UNORM, for the device's texture filter
 };
 
@@ -41,7 +41,7 @@ inline ResourceDesc atlas_desc(AtlasCodes codes, const glm::uvec3& extent)
                       extent / glm::uvec3(codes_a_texel(codes), 1, 1));
 }
 
-/// Size in codes of a volume of this many bricks side by side, including the border.
+/// Size in codes of an image with this many contiguous bricks, including the border.
 inline glm::uvec3 codes_side_by_side(const glm::uvec3& brick_counts)
 {
     return gpu::BRICK_SIZE * brick_counts + 2u * gpu::code_border();

@@ -9,7 +9,7 @@ namespace shvr {
 
 namespace {
 
-/// Number of bricks in one dispatch, limited to bound the time of a dispatch on a slow device.
+/// Maximum number of bricks per dispatch, which bounds a dispatch's time on slow devices.
 constexpr size_t BATCH = 2048;
 
 }  // namespace
@@ -18,7 +18,7 @@ bool Visibility::shows(double lower_code, double upper_code) const
 {
     const double lower = double(params.table_lower), upper = double(params.table_upper);
     if (params.skipping == 0) return true;
-    // Adds one code on each side to the kernels' guard, because nothing visible may be excluded here.
+    // Adds one code on each side of the kernels' guard, so that no visible code is excluded.
     const double beside = 1.0 + double(params.guard), from = lower_code - beside, to = upper_code + beside;
     if (params.table_entries < 2 || to < lower || from > upper) return false;
     const double last = double(params.table_entries - 1);

@@ -1,6 +1,6 @@
 #pragma once
-// Computes how far rays may leap within bricks (shaders/brick_leap.comp): one workgroup per brick. Runs when bricks
-// arrive, and for all bricks on the device when the transfer function or the groups change.
+// Computes how far rays may leap within bricks (shaders/brick_leap.comp), with one workgroup per brick. Runs for
+// arriving bricks, and for all bricks on the device when the transfer function or the groups change.
 
 #include <array>
 #include <span>
@@ -11,12 +11,12 @@
 
 namespace shvr {
 
-/// Decides whether a range of codes is visible.
+/// Which codes and groups are visible.
 struct Visibility {
     gpu::BrickLeapParams params{};
     std::vector<uint32_t> visible_intervals;  ///< engine/look/transfer_function.h
     std::array<uint32_t, 8> visible_groups{};
-    /// Whether anything in a range of codes is visible, as kernels compute it (shaders/library/occupancy.glsl).
+    /// Whether a range of codes contains visible codes, as in kernels (shaders/library/occupancy.glsl).
     bool shows(double lower_code, double upper_code) const;
 };
 bool operator==(const Visibility& a, const Visibility& b);

@@ -1,5 +1,5 @@
 #pragma once
-// Moves a whole batch of bricks from a buffer to their places on the device (shaders/brick_unpack.comp).
+// Copies a batch of bricks from a buffer to their places in device images (shaders/brick_unpack.comp).
 
 #include <span>
 

@@ -1,5 +1,5 @@
 #pragma once
-// Converts linear light to a screen's pixels (shaders/picture/encode.comp).
+// Converts linear light to the pixel format of a screen (shaders/picture/encode.comp).
 
 #include "engine/graph/frame_graph.h"
 #include "shaders/encode.h"

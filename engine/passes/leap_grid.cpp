@@ -6,12 +6,12 @@ namespace shvr {
 
 namespace {
 
-/// The cells that a stage must compute: the cells that the changed cells can affect, and the cells around them that
-/// later stages read.
+/// The cells that a stage must compute: those that the changed cells can affect, and the cells around these that later
+/// stages read.
 CellBox cells_of_stage(const CellBox& changed, const glm::uvec3& counts, uint32_t stage)
 {
-    // A distance is at most LEAP_LIMIT, so the last stage covers LEAP_LIMIT cells around the change. Later stages read
-    // the result of stage s along their axes: stage 1 along x, stage 2 along y, stage 3 along z.
+    // A distance is at most LEAP_LIMIT, so the last stage covers LEAP_LIMIT cells around the change. The result of each
+    // stage is read by later stages along their axes: stage 1 runs along x, stage 2 along y, stage 3 along z.
     const glm::uvec3 reach = gpu::LEAP_LIMIT * (1u + glm::uvec3(stage < 1, stage < 2, stage < 3));
     return {changed.begin - glm::min(changed.begin, reach), glm::min(changed.end + reach, counts)};
 }
@@ -50,25 +50,25 @@ void distance(FrameGraph& graph, const VolumeBinding& volume, uint32_t axis, con
     to = pass.write("leap", to);
 }
 
-/// The maximum by which a sample's code may exceed the codes of its voxels (leap.h): the sample's largest distance from
-/// them, summed over the axes, times the largest difference of codes.
+/// The maximum by which a sample's code may exceed the codes of the voxels that it tests (leap.h): the largest distance
+/// from these voxels, summed over the axes, times the largest difference of codes.
 float guard_of_sample_bits(const glm::uvec3& cell_counts)
 {
     constexpr double CODES = 65535.0, EPSILON = 0x1p-24;
     const glm::uvec3 size = gpu::CELL_SIZE * cell_counts;
     const double side = std::max({size.x, size.y, size.z}), reach = gpu::SAMPLE_BITS_REACH;
-    // Rounding errors of a length along the ray, of its product, and of its sum with the ray's start; all of them count
-    // twice, once for each of the two samples between which a distance is measured.
+    // Rounding errors of a length along the ray, of its product, and of the sum with the ray's start. All of them count
+    // twice, since a distance is measured between two samples.
     const double of_floats = 2.0 * EPSILON * side * (3.0 * reach + (1.0 + reach));
     const double of_parts = (0.5 * gpu::SAMPLE_BITS_AHEAD + 1.0) / gpu::SAMPLE_BIT_PARTS;
     return float(1.0 + CODES * (3.0 * of_floats + of_parts * (1.0 + 1.0 / 4.0 + 1.0 / 16.0)));
 }
 
-/// Computes the sample bits. A sample between the voxels of two cells has its bit in the upper cell.
+/// Computes the sample bits. The bit of a sample between the voxels of two cells is in the upper cell.
 void sample_bits(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input)
 {
     if (!volume.sample_bits) return;
-    // The cells on either side of a changed cell read its voxels, or whether it is empty.
+    // The neighbours of a changed cell read its voxels, and whether it is empty.
     const CellBox cells{input.changed.begin - glm::min(input.changed.begin, glm::uvec3(1)),
                         glm::min(input.changed.end + 1u, volume.cell_counts)};
     Pass pass = graph.compute("sample_bits");
@@ -99,7 +99,7 @@ void leap_grid_stage(FrameGraph& graph, VolumeBinding& volume, const LeapGridInp
 
 void leap_grid_patch(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input)
 {
-    // The same cells as in the last stage: those whose distance the changed cells may limit.
+    // The same cells as in the last stage: the cells whose distance a changed cell may limit.
     const CellBox cells = cells_of_stage(input.changed, volume.cell_counts, LEAP_STAGES - 1);
     Pass pass = graph.compute("leap_bound");
     pass.push(gpu::LeapBoundParams{cells.begin, cells.end, input.changed.begin, input.changed.end});

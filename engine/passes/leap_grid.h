@@ -38,11 +38,11 @@ struct LeapGridInput {
 
 inline constexpr uint32_t LEAP_STAGES = 4;
 
-/// Adds one stage, 0 ... LEAP_STAGES - 1, and updates the handles of `volume` that the stage writes. The leap grid and
-/// the sample bits are valid after the last stage, if all four ran in order with the same input.
+/// Adds stage 0 ... LEAP_STAGES - 1, and updates the handles of `volume` that the stage writes. The leap grid and the
+/// sample bits are valid after the last stage, provided all stages ran in order with the same input.
 void leap_grid_stage(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input, uint32_t stage);
 
-/// Patches the grid so that it is correct for the new contents of the changed cells.
+/// Updates the grid around the changed cells so that no leap is too long for their new contents.
 void leap_grid_patch(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input);
 
 }  // namespace shvr

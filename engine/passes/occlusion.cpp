@@ -11,19 +11,19 @@ namespace shvr {
 
 namespace {
 
-/// Maximum distance between a voxel and the start of its rays.
+/// Maximum distance between a voxel and the points where its rays start.
 constexpr double MAX_OFFSET = double(gpu::OCCLUSION_FURTHEST) + double(gpu::OCCLUSION_LIFT);
 
-/// Stretches (ray lengths that taps cover) for a radius of 16, in voxels of the level: for taps in voxels, in cells of
-/// two voxels, and in cells of four voxels. The last two grow with the radius. Smaller radii have fewer taps.
+/// Stretches (the ray length that one tap covers) for a radius of 16, in voxels of the level: for taps in voxels, in
+/// cells of two voxels and in cells of four voxels. The last two grow with the radius. Smaller radii have fewer taps.
 constexpr double NEAR_STRETCH = 1.035;
 constexpr double NEAR_STRETCHES[] = {NEAR_STRETCH, NEAR_STRETCH, 2.0 * NEAR_STRETCH};
 constexpr double NEAR_TOTAL = 4.0 * NEAR_STRETCH;
 constexpr uint32_t FAR_SIZES[] = {0, 0, 0, 1, 1}, ALL_OF_2[std::size(FAR_SIZES)] = {};
 constexpr double STRETCHES_OF_SIZES[] = {2.077, 2.815};
 constexpr double MAX_STRETCH_2 = 8.6;  ///< beyond this, only the stretches of taps in cells of four voxels grow
-constexpr uint32_t MAX_APRON = 14;     ///< width in cells of any size, for the largest radius
-constexpr double MAX_STRETCHED = 1.2;  ///< factor by which stretches grow before another tap is added
+constexpr uint32_t MAX_APRON = 14;     ///< maximum apron, in cells of either size, for the largest radius
+constexpr double MAX_STRETCHED = 1.2;  ///< stretches grow by up to this factor before a tap is added
 static_assert(std::size(FAR_SIZES) == gpu::OCCLUSION_TAPS_2 + gpu::OCCLUSION_TAPS_4);
 static_assert(3.0 * NEAR_STRETCH + MAX_OFFSET + 0.5 < gpu::OCCLUSION_NEAR_APRON + 1);
 static_assert(gpu::OCCLUSION_NEAR_APRON_PAGED >= gpu::OCCLUSION_NEAR_APRON + gpu::BRICK_APRON);
@@ -35,7 +35,7 @@ const double TURN = std::numbers::pi * (3.0 - std::sqrt(5.0));
 
 namespace {
 
-/// The size of the scratch image for this many jobs; gpu::scratch_place maps a job to its texels.
+/// Size of the scratch image for this many jobs; gpu::scratch_place locates a job's texels.
 glm::uvec3 scratch_places(uint32_t jobs)
 {
     const uint32_t columns = (jobs + gpu::OCCLUSION_COLUMN - 1) / gpu::OCCLUSION_COLUMN;
@@ -114,8 +114,8 @@ OcclusionTaps occlusion_taps_of(const glm::dvec3& spacing, double radius, bool i
 
 uint32_t occlusion_reach(double radius)
 {
-    // A tap lies within the radius of its ray's start. Another 4 voxels cover the voxel itself and its distance from
-    // the start.
+    // Every tap lies within `radius` of the point where its ray starts. The other 4 voxels cover the voxel itself and
+    // the distance from it to the start.
     return std::max(1u, uint32_t(std::ceil((radius + 4.0) / gpu::BRICK_SIZE)));
 }
 

@@ -11,9 +11,9 @@
 namespace shvr {
 
 struct OcclusionBinding {
-    Resource values;  ///< r8ui, in slots with BRICK_TEXELS a side, as many slots as in the density atlas
-    /// r32ui; a brick takes half of BRICK_SIZE a side in the first image, a quarter in the second. Paged bricks lie in
-    /// slots; bricks of a resident volume lie side by side as in the volume.
+    Resource values;  ///< r8ui, in as many slots as the density atlas has, each with BRICK_TEXELS a side
+    /// r32ui; a brick takes half of BRICK_SIZE a side in the first image and a quarter in the second. Paged bricks are
+    /// in slots; bricks of a resident volume are contiguous, in the volume's order.
     std::array<Resource, gpu::OCCLUSION_SIZES> cells{};
 };
 
@@ -29,24 +29,24 @@ ResourceDesc occlusion_around_desc(uint32_t size, uint32_t jobs);
 /// level.
 struct OcclusionTaps {
     double radius = 0.0;
-    double first = 0.0;                   ///< length at the start of a ray that never blocks light
+    double first = 0.0;                   ///< length at a ray's start in which nothing blocks light
     std::vector<gpu::OcclusionTap> taps;  ///< from near to far; their stretches and `first` add up to the radius
-    std::array<uint32_t, gpu::OCCLUSION_SIZES + 1> end{};          ///< end of the near taps, then of each cell size's
+    std::array<uint32_t, gpu::OCCLUSION_SIZES + 1> end{};          ///< end of the near taps, then ends by cell size
     double near_stretch = 0.0;                                     ///< ray length covered by the first near tap
     std::array<double, gpu::OCCLUSION_SIZES> stretches{1.0, 1.0};  ///< ray length covered by one tap, per cell size
-    std::array<uint32_t, gpu::OCCLUSION_SIZES> aprons{};           ///< cells around a brick, as far as taps may reach
+    std::array<uint32_t, gpu::OCCLUSION_SIZES> aprons{};           ///< how many cells around a brick taps reach
 };
 /// The largest radius, in voxels of any level.
 inline constexpr double OCCLUSION_MAX_RADIUS = gpu::OCCLUSION_REACH * gpu::BRICK_SIZE - 4.0;
-/// Radii below 1 have no taps: light reaches every voxel. `is_paged`: rays may also begin in a brick's apron.
+/// Radii below 1 have no taps, so all voxels are lit. `is_paged`: rays may also begin in a brick's apron.
 OcclusionTaps occlusion_taps(double radius, bool is_paged = false);
 
-/// Distance in bricks, on each side of a brick, from which light may arrive at the brick.
+/// Maximum distance, in bricks, from which light can reach a brick.
 uint32_t occlusion_reach(double radius);
 
 /// Sets `slots` to fully lit.
 void occlusion_reset(FrameGraph& graph, OcclusionBinding& occlusion, std::span<const uint32_t> slots);
-/// Initializes new images to fully lit and transparent; slot 0, the substitute for missing bricks, keeps these values.
+/// Initializes new images as fully lit and transparent. Slot 0, which stands for missing bricks, stays so.
 void occlusion_begin(FrameGraph& graph, OcclusionBinding& occlusion);
 
 struct OcclusionCellsInput {
@@ -55,19 +55,19 @@ struct OcclusionCellsInput {
     std::optional<MaskBinding> mask;
     std::vector<float> group_opacities;  ///< 256; used with a mask
 };
-/// All jobs must be in one level. Updates the handles of `occlusion` that it writes.
+/// All jobs must be in one level. Updates those handles of `occlusion` that the pass writes.
 void occlusion_cells(FrameGraph& graph, const VolumeBinding& volume, OcclusionBinding& occlusion,
                      const OcclusionCellsInput& input, std::span<const gpu::OcclusionCellsJob> jobs);
 
 struct OcclusionInput {
-    gpu::OcclusionBakeParams params;  ///< complete except for the data derived from the other inputs
+    gpu::OcclusionBakeParams params;  ///< members derived from the other inputs may be left unset
     OcclusionTaps taps;
     std::vector<uint32_t> visible_intervals;                                      ///< engine/look/transfer_function.h
     std::array<float, gpu::OCCLUSION_SIZES * gpu::OCCLUSION_LEVELS> exponents{};  ///< as in OcclusionGatherParams
-    OcclusionCellsInput near;  ///< opacities for the length covered by the first near tap
+    OcclusionCellsInput near;  ///< opacities for the ray length covered by the first near tap
 };
-/// All jobs, at most OCCLUSION_SLICE of them, must be in one level. `around`: for each job, the bricks around the job's
-/// brick, see OcclusionJob.
+/// There may be up to OCCLUSION_SLICE jobs, all in one level. `around`: for each job, the bricks around the job's brick
+/// (see OcclusionJob).
 void occlusion_bake(FrameGraph& graph, const VolumeBinding& volume, OcclusionBinding& occlusion,
                     OcclusionScratch& scratch, const OcclusionInput& input, std::span<const gpu::OcclusionJob> jobs,
                     std::span<const uint32_t> around);

@@ -1,11 +1,11 @@
 #pragma once
-// Samples of ambient occlusion for voxels that are not cubes (STRETCHED of shaders/occlusion/occlusion_bake.comp).
+// Ambient occlusion samples for voxels that are not cubes (STRETCHED in shaders/occlusion/occlusion_bake.comp).
 
 #include "engine/passes/occlusion.h"
 
 namespace shvr {
 
-/// Largest radius, in voxels of any level, up to which all samples in cells use cells of two voxels.
+/// Up to this radius, in voxels of any level, all samples in cells use cells of two voxels.
 inline constexpr double OCCLUSION_MAX_RADIUS_OF_2 = 26.0;
 
 /// Like occlusion_taps(), for voxels with edge lengths `spacing`.

@@ -1,7 +1,7 @@
 #pragma once
 // Brushes on a region of the volume: select voxels by density. The result is one bit per voxel of the region, the same
 // for preview, painting and tests. engine/annotation/painting.h, which works on the mask, decides which of the selected
-// voxels may change group. The number of passes is fixed, whatever the region contains.
+// voxels may change group. The number of passes does not depend on the region's contents.
 
 #include <span>
 
@@ -23,8 +23,8 @@ Resource select_flood(FrameGraph& graph, const VolumeBinding& volume, const Regi
 /// Selects the connected components that have no voxel on the region's boundary.
 Resource select_speckles(FrameGraph& graph, const VolumeBinding& volume, const RegionInput& input);
 
-/// The flood and speckles brushes for a region whose bits within its rows are already known
-/// (engine/bricks/threshold_bricks.h).
+/// The flood and speckles brushes, given the bits of the region's voxels (engine/bricks/threshold_bricks.h). Bits
+/// outside the region's rows must be 0.
 Resource select_flood_in(FrameGraph& graph, const gpu::RegionParams& params, std::span<const uint32_t> bits);
 Resource select_speckles_in(FrameGraph& graph, const gpu::RegionParams& params, std::span<const gpu::RowSpan> rows,
                             std::span<const uint32_t> bits);
@@ -32,7 +32,7 @@ Resource select_speckles_in(FrameGraph& graph, const gpu::RegionParams& params, 
 /// Hints that a brush is likely to be used soon.
 void expect_brushes(FrameGraph& graph, const VolumeBinding& volume);
 
-/// Bits of a box of voxels, in a region's layout; the box need not lie inside the region.
+/// Bits of a box of voxels, in a region's layout; the box may extend beyond the region.
 struct SeedBits {
     Resource words;
     glm::uvec3 size{0};  ///< voxels

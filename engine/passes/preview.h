@@ -12,19 +12,19 @@
 namespace shvr {
 
 struct PreviewInput {
-    gpu::RaycastParams params;  ///< the ray caster's parameters; only pixels, light and distance blending are used
+    gpu::RaycastParams params;  ///< the ray caster's parameters: only pixels, light and distance blending are used
     gpu::PreviewParams preview;
     std::span<const uint32_t> words;   ///< one bit per voxel, in rows of params.words_per_row
-    std::optional<Resource> surfaces;  ///< surfaces for the same pixels; not in slices
+    std::optional<Resource> surfaces;  ///< surfaces for the same pixels; not used in slices
     bool slice = false;
     PixelGroups pixel_groups;
 };
 
 struct PreviewSeen {
-    std::optional<Resource> surfaces;  ///< the ray caster's surfaces, with the preview added; null in slices
+    std::optional<Resource> surfaces;  ///< the ray caster's surfaces combined with the preview; null in slices
     Resource seen;                     ///< for `preview_over`
 };
-/// All resources of the result are transient: valid in this frame only.
+/// All resources of the result are transient, so they are valid in this frame only.
 PreviewSeen preview(FrameGraph& graph, const PreviewInput& input);
 
 /// Hints that a preview is likely to be drawn soon.

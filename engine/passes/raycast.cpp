@@ -16,17 +16,17 @@ uint32_t shininess_squarings(float shininess)
 
 namespace {
 
-/// Number of threads that run in lockstep on devices that abort long loops (MAX_TURNS). An iteration that one thread
-/// needs may cost all of them an iteration. Even with sixteen threads, the total stays below 65535 iterations.
+/// Number of threads that run in lockstep on devices that abort long loops (MAX_TURNS). An iteration needed by one
+/// thread may cost all of them an iteration. Even for sixteen threads, the total stays below 65535 iterations.
 constexpr uint64_t LANES = 8;
 constexpr uint64_t MAX_BLOCKS = 4096;
-/// Margin around an iso-surface's pixels, for rounding of rays, and their alignment, for the widest thread groups.
+/// Margins around an iso-surface's pixels: for rounding of rays, and for alignment to the widest thread groups.
 constexpr double SHELL_MARGIN = 1.0, SHELL_ALIGNED = 16.0;  // pixels
 
-constexpr double MAX_PIECES = 64.0;  ///< maximum pieces of a stretch when only its light is integrated: 2^HALVINGS
+constexpr double MAX_PIECES = 64.0;  ///< maximum pieces of a stretch if only the light is integrated: 2^HALVINGS
 
-/// Maximum number of iterations per step of a ray that is integrated (integral.glsl). Lanes do not wait for each other:
-/// each passes a stretch per iteration.
+/// Maximum number of iterations per step of an integrated ray (integral.glsl). Lanes do not wait for each other: in
+/// each iteration, each lane passes one stretch.
 double turns_of_integral(const gpu::RaycastParams& params, uint64_t levels)
 {
     const double stretches = 2.0 * std::sqrt(3.0) * double(params.step) + 4.0;
@@ -34,22 +34,22 @@ double turns_of_integral(const gpu::RaycastParams& params, uint64_t levels)
     return stretches * (1.0 + 2.0 * double(levels) + to_find * (3.0 + MAX_PIECES + double(params.point_count)));
 }
 
-/// Number of steps of a ray that one dispatch may take.
+/// Maximum number of steps of a ray in one dispatch.
 uint64_t steps_of_block(const VolumeBinding& volume, const RaycastInput& input, bool is_shelled)
 {
-    // Maximum number of iterations to find a place, in a separate loop; in paged bricks, this loop takes one iteration
-    // per level of the directory. Unrolled loops of fixed length do not count (mask.glsl, groups.glsl, search.glsl).
+    // Maximum number of iterations of the separate loop that finds a place; in paged bricks, the loop takes one
+    // iteration per directory level. Unrolled loops of fixed length do not count (mask.glsl, groups.glsl, search.glsl).
     const uint64_t levels = volume.pages ? volume.pages->depth : 0;
     const uint64_t to_leap = 1 + levels;
-    const uint64_t to_search = to_leap + 1 + gpu::SEARCH_AHEAD * levels;  // each but the last advances by as many steps
+    const uint64_t to_search = to_leap + 1 + gpu::SEARCH_AHEAD * levels;  // each but the last advances the ray
     const uint64_t to_take = 1 + 2 * levels + (is_shelled ? 2 * (to_leap + 1) : 0);
     // Every iteration advances at least one lane by a step, except iterations in which all lanes find that they must
-    // continue elsewhere.
+    // continue in another cell or brick.
     double turns = input.integrated && !input.pick
                        ? turns_of_integral(input.params, levels)
                        : double(LANES * std::max(to_leap, to_take) + 1 + to_leap + to_search + to_take);
-    // An iso-surface is searched cell by cell: at most three cells per reference length, and one where the ray enters.
-    // Before each cell, the ray passes cells of four voxels a side, a quarter as many.
+    // An iso-surface is searched cell by cell: at most three cells per reference length, plus the cell where the ray
+    // enters. Before each cell, the ray passes cells of four voxels a side, a quarter as many.
     if (is_shelled) turns += 2.25 * double(LANES * (to_leap + 1)) * (3.0 * double(input.params.step) + 1.0);
     return std::max(uint64_t(double(gpu::MAX_TURNS) / turns), uint64_t{1});
 }
@@ -72,7 +72,7 @@ std::vector<std::byte> bytes_of(const RaycastOcclusion& occlusion)
     return bytes;
 }
 
-/// Below this step, in reference lengths, sums are compensated: plain sums have an error of 1.5e-7 / step.
+/// Below this step, in reference lengths, sums use compensation: plain sums have an error of 1.5e-7 / step.
 constexpr float MIN_PLAIN_STEP = 0.05f;
 
 /// The inputs that select the kernel and its constants.
@@ -126,7 +126,7 @@ KernelVariant with(KernelVariant kernel, const Constants& constants)
     return kernel;
 }
 
-/// The constants that select how a step is classified, for rays that march.
+/// The constants that select how the steps of marching rays are classified.
 Constants constants_of_steps(const Choice& choice, const RaycastInput& input)
 {
     Constants constants{{"GROUP_WIDTH", input.pixel_groups.width}};
@@ -158,7 +158,7 @@ KernelVariant pick_kernel(const Choice& choice, const RaycastInput& input)
     return with(with(kernel, constants_of_steps(choice, input)), {{"HAS_SURFACES", choice.is_surfaced}});
 }
 
-/// Returns the kernel: colours along rays, one sample per ray, or the picked point.
+/// Returns the kernel for colours along rays, one sample per ray (slices), or the picked point.
 KernelVariant kernel_of(const Choice& choice, const RaycastInput& input)
 {
     if (input.slice) return slice_kernel(choice, input);
@@ -189,8 +189,8 @@ KernelVariant kernel_of(const Choice& choice, const RaycastInput& input)
     return kernel;
 }
 
-/// Hints at the kernels likely to be needed next: for painting, for an iso-surface or an opaque surface that enters the
-/// picture, or for a click. `kept_of_shell`: the KEPT constant of pictures with an iso-surface.
+/// Hints at the kernels that will probably be needed next: for painting, for an iso-surface or an opaque surface that
+/// enters the picture, or for a click. `kept_of_shell`: the KEPT constant of pictures with an iso-surface.
 void expect_next(FrameGraph& graph, const Choice& now, const RaycastInput& input, uint32_t kept_of_shell)
 {
     const auto expect = [&](const auto& change) {
@@ -215,15 +215,15 @@ void expect_next(FrameGraph& graph, const Choice& now, const RaycastInput& input
     });
 }
 
-/// Pixels of the part, relative to its first one, that are drawn by one kernel.
+/// Pixels, relative to the part's first pixel, that one kernel draws.
 struct Area {
     glm::uvec2 begin{0}, end{0};
     bool is_shelled = false;
     bool is_empty() const { return begin.x >= end.x || begin.y >= end.y; }
 };
 
-/// Drawing a ray with the iso-surface kernel costs twice as much even if the ray never meets the iso-surface, so the
-/// pixels above, below and on both sides of the surface's pixels are drawn without it.
+/// The iso-surface kernel takes twice as long per ray even for rays that never meet the iso-surface. So the pixels
+/// above, below and on both sides of the surface's pixels are drawn by the kernel without it.
 std::vector<Area> areas_of(const RaycastInput& input, bool is_shelled)
 {
     const glm::uvec2 size = input.params.pixel_end - input.params.pixel_begin;
@@ -273,7 +273,7 @@ void bind_steps(Pass& pass, const VolumeBinding& volume, const RaycastInput& inp
         pass.read("surfaces", *input.surfaces);
 }
 
-/// Binds the image of values that rays keep between blocks, or an image of one texel if rays keep no values.
+/// Binds the image of the values that rays keep between blocks; if rays keep none, binds an image of one texel.
 void bind_rays(FrameGraph& graph, Pass& pass, const RaycastInput& input, std::optional<Resource>& rays, bool is_begun)
 {
     const bool is_first = input.params.first_step == 0;
@@ -283,7 +283,7 @@ void bind_rays(FrameGraph& graph, Pass& pass, const RaycastInput& input, std::op
         rays = is_first && (!is_begun || !input.waiting) ? pass.write("rays", *rays) : pass.modify("rays", *rays);
 }
 
-/// `is_begun`: whether other pixels of the target, and of `rays`, have already been drawn.
+/// `is_begun`: whether other pixels of the target and of `rays` were already drawn.
 Resource raycast_block(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& input, bool is_shelled,
                        Resource target, std::optional<Resource>& rays, bool is_begun)
 {
@@ -319,7 +319,7 @@ ShellPixels shell_pixels(const gpu::RaycastParams& params)
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec3 side(corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0);
         const glm::dvec3 point = glm::dvec3(params.shell_center) + side * glm::dvec3(params.shell_reach);
-        // The plane through the point, parallel to the planes on which rays begin and end.
+        // The plane through the point, parallel to the planes where rays begin and end.
         const double t = glm::dot(normal, point - near) / depth;
         const auto between = [&](const glm::vec3& a, const glm::vec3& b) {
             return (1.0 - t) * glm::dvec3(a) + t * glm::dvec3(b);
@@ -372,7 +372,7 @@ Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& i
     const bool shell_keeps_rays = input.waiting || steps > steps_of_block(volume, input, true);
     const Choice shelled = choice_of(volume, input, true, shell_keeps_rays);
     if (is_shelled) expect_next(graph, shelled, input, shelled.kept);
-    // Draws the pixels without the iso-surface, including those around its region.
+    // Draws the pixels that need no iso-surface, including those around its region.
     const Choice plain = choice_of(volume, input, false, input.waiting);
     if (is_shelled) graph.expect(kernel_of(plain, input));
     expect_next(graph, plain, input, shelled.kept);

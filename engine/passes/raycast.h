@@ -1,6 +1,6 @@
 #pragma once
 // Emission-absorption ray-casting of a bricked volume (shaders/rays: raycast.comp, integral.comp), slices through the
-// volume (slice.comp), and the place at which the user points (pick.comp).
+// volume (slice.comp), and picking of the point under the cursor (pick.comp).
 
 #include <optional>
 #include <span>
@@ -18,16 +18,16 @@ namespace shvr {
 struct RaycastOcclusion {
     Resource values;  ///< OcclusionBinding::values
     gpu::OcclusionLook look;
-    std::vector<gpu::OcclusionSegment> segments{};  ///< curve from arriving to visible light; empty: a power law
+    std::vector<gpu::OcclusionSegment> segments{};  ///< curve from arriving to visible light; if empty, a power law
 };
 
-/// Returns log2 of the shininess if kernels can reach it by squaring, otherwise gpu::NOT_A_POWER_OF_TWO.
+/// Returns log2 of the shininess if it is a power of two, so kernels can square; else gpu::NOT_A_POWER_OF_TWO.
 uint32_t shininess_squarings(float shininess);
 
-/// Rays that stop and wait at bricks missing on the device, and resume in a later graph (shaders/raycast.h, KEPT_ALL).
+/// Rays that wait at bricks missing on the device and resume in a later graph (shaders/raycast.h, KEPT_ALL).
 struct RaysInWaiting {
     Resource state;           ///< rgba32f image, as wide as the drawn pixels and twice as high; updated by raycast()
-    bool have_begun = false;  ///< `state` contains the result of an earlier graph
+    bool have_begun = false;  ///< whether `state` has the result of an earlier graph
 };
 
 struct RaycastInput {
@@ -43,26 +43,26 @@ struct RaycastInput {
     PixelGroups pixel_groups;
     uint32_t shell = gpu::SHELL_NONE;  ///< unless SHELL_NONE, params.shell_* are set
     bool preintegrated = false;        ///< `table` is for steps between two densities
-    bool integrated = false;           ///< `table` has the points of the function; integrates without steps
-    bool slice = false;                ///< draws a slice: the voxels half-way along the rays, using params.slice_*
+    bool integrated = false;           ///< `table` has the function's points; integrates without steps
+    bool slice = false;                ///< draws a slice: voxels half-way along the rays, by params.slice_*
     bool smooth_borders = false;       ///< smooth borders of painted groups; requires Visibility::params.paint_reach 1
-    bool pick = false;                 ///< computes positions instead of colours, see the kernel
-    RaysInWaiting* waiting = nullptr;  ///< paged bricks only; null: rays do not wait
+    bool pick = false;                 ///< computes positions instead of colours (pick.comp)
+    RaysInWaiting* waiting = nullptr;  ///< for paged bricks only; null: rays do not wait
 };
 
 /// Pixels relative to a part's first pixel.
 struct ShellPixels {
     glm::uvec2 begin{0}, end{0};
 };
-/// Returns a box of pixels outside of which no ray meets the region of params.shell_*. Returns the whole part if the
-/// region begins before the rays do, because the box cannot be determined then.
+/// Returns a box of pixels that contains all rays that meet the region of params.shell_*. Returns the whole part if the
+/// region begins before the rays do, because then the box cannot be determined.
 ShellPixels shell_pixels(const gpu::RaycastParams& params);
 
 /// Draws pixels params.pixel_begin ... pixel_end into `target`, an rgba32_float picture: linear light,
 /// premultiplied, over the background. Returns the new version of `target`, and updates `volume.pages->reached`.
 /// Long rays take one pass per block of steps; COUNTER_CUT_SHORT counts rays that exceed the maximum number of
-/// blocks or that the device stops. Waiting rays mark only the bricks that they wait for; the picture is final once
-/// no ray waits.
+/// blocks or that the device stops. If rays wait, they mark only the bricks that they wait for, and the picture is
+/// final once no ray waits.
 Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& input, Resource target);
 
 }  // namespace shvr

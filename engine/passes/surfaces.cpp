@@ -9,7 +9,7 @@ namespace shvr {
 
 namespace {
 
-/// Lists the surfaces of each tile; `tiles` has the words that earlier blocks have written.
+/// Lists the surfaces of each tile. `tiles` contains the words written by earlier blocks.
 Resource tiles_block(FrameGraph& graph, const SurfacesInput& input, Resource tiles)
 {
     const glm::uvec2 pixels = input.params.pixel_end - input.params.pixel_begin;

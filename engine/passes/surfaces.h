@@ -13,17 +13,17 @@ namespace shvr {
 /// Surfaces on the device, and the hierarchy of boxes around them.
 struct SurfaceList {
     Resource nodes;  ///< gpu::SurfaceNode, params.node_count nodes in depth-first order
-    Resource list;   ///< gpu::Surface; like `nodes`, an rgba32_uint image with rows of gpu::SURFACES_IN_ROW
+    Resource list;   ///< gpu::Surface; an rgba32_uint image with rows of gpu::SURFACES_IN_ROW, like `nodes`
 };
 
 /// Maximum number of nodes that one dispatch may visit: some devices abort a thread's loops after 65535 iterations in
-/// total. Each node costs one iteration; if lanes run in lockstep, so does each surface of any leaf that a lane visits.
-/// Lists add a few hundred iterations. A lower limit would cost more dispatches, and a dispatch that finds nothing
+/// total. Each node costs one iteration. If lanes run in lockstep, so does each surface of any leaf that a lane visits.
+/// Tile lists add a few hundred iterations. A lower limit would cost more dispatches, and a dispatch that finds nothing
 /// still sets up every ray.
 inline constexpr uint32_t NODES_IN_DISPATCH = 60'000 / (2 + gpu::SURFACES_IN_LEAF);
 
 struct SurfacesInput {
-    gpu::RaycastParams params;  ///< the ray caster's parameters; only pixels, light and distance blending are used
+    gpu::RaycastParams params;  ///< the ray caster's parameters: only pixels, light and distance blending are used
     gpu::SurfaceParams scene;
     std::optional<SurfaceList> listed;
     bool probe = false;  ///< requires scene.probe_* to be set
@@ -34,8 +34,8 @@ struct SurfacesInput {
 /// Device bytes per tile of a part, in addition to the image.
 inline constexpr uint64_t SURFACE_TILE_BYTES = sizeof(uint32_t) * gpu::SURFACE_TILE * gpu::SURFACE_TILE;
 
-/// Returns an image of the part's size: lit colour in linear light, and the distance along each pixel's ray at which a
-/// surface ends the ray, or gpu::NO_SURFACE. Valid in this frame only.
+/// Returns an image of the part's size. A texel has the lit colour, in linear light, and the distance along the pixel's
+/// ray at which a surface ends the ray, or gpu::NO_SURFACE. Valid in this frame only.
 Resource surfaces(FrameGraph& graph, const SurfacesInput& input);
 
 }  // namespace shvr

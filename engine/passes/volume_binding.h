@@ -17,7 +17,7 @@ namespace shvr {
 struct PageBinding {
     Resource directory;
     Resource cell_leap;     ///< r8ui per cell of every slot
-    Resource reached;       ///< one bit per entry, set by rays that visit its brick
+    Resource reached;       ///< one bit per entry, set by a ray that visits the entry's brick
     bool feedback = false;  ///< whether rays mark the entries of `reached`
     glm::uvec3 counts{1};
     uint32_t cell_shift = 0;
@@ -26,9 +26,9 @@ struct PageBinding {
 
 struct VolumeBinding {
     Resource atlas;  ///< bricks with their aprons, in the layout of `codes`
-    /// Further images of the same size, stacked on top of the atlas (shaders/library/atlas.glsl); for paged volumes.
+    /// Further images of the atlas, of the same size (shaders/library/atlas.glsl), stacked along z; for paged volumes.
     std::vector<Resource> more_atlases;
-    Resource cell_ranges;  ///< r32ui per cell of the volume, or of every slot: minimum | maximum << 16
+    Resource cell_ranges;  ///< r32ui per cell of the volume or of the slots: minimum | maximum << 16
     // Resident volumes:
     Resource page_table;                   ///< uint per brick: slot
     Resource leap;                         ///< r32ui per cell, see shaders/leap.h
@@ -45,8 +45,8 @@ struct VolumeBinding {
     bool is_filtered() const { return codes == AtlasCodes::filtered; }
 };
 
-/// The constants of kernels that read codes (shaders/library/atlas.glsl). `is_stacked`: the kernel supports stacked
-/// images.
+/// The constants of kernels that read codes (shaders/library/atlas.glsl). `is_stacked`: whether the kernel supports
+/// stacked images.
 inline std::vector<std::pair<std::string, uint32_t>> constants_of_codes(const VolumeBinding& volume, bool is_stacked)
 {
     std::vector<std::pair<std::string, uint32_t>> constants;
@@ -55,8 +55,8 @@ inline std::vector<std::pair<std::string, uint32_t>> constants_of_codes(const Vo
     return constants;
 }
 
-/// Binds the atlas to a kernel that supports stacked images. Bindings for which there is no further image get the first
-/// image; kernels never read it through them.
+/// Binds the atlas to a kernel that supports stacked images. Bindings without a further image get the first image,
+/// which kernels never read through these bindings.
 inline void bind_stacked_atlas(Pass& pass, const VolumeBinding& volume)
 {
     pass.read("atlas", volume.atlas);
@@ -65,7 +65,7 @@ inline void bind_stacked_atlas(Pass& pass, const VolumeBinding& volume)
                   i < volume.more_atlases.size() ? volume.more_atlases[i] : volume.atlas);
 }
 
-/// Binds the atlas to a kernel that supports stacked images for paged bricks only.
+/// Binds the atlas to a kernel that supports stacked images only for paged bricks.
 inline void bind_atlas(Pass& pass, const VolumeBinding& volume)
 {
     if (volume.pages)
