@@ -93,7 +93,7 @@ double look_at(Scene& scene, const Look& look, const Shot& shot, const PicturePa
 /// Returns one short graph of work that must precede drawing parts of this look; null if none is left. Submit the graph
 /// before the next call. Calling this function is optional: the first draw() does all work that is left.
 std::optional<FrameGraph> next_preparation(Scene& scene, const Look& look);
-/// Like next_preparation(), but for idle time: work that makes later pictures faster without changing them.
+/// Like next_preparation(), for idle time: returns work that makes later pictures faster without changing them.
 std::optional<FrameGraph> next_refinement(Scene& scene, const Look& look);
 /// Like next_preparation(), but returns the next slice of the look's ambient occlusion, nearest to the camera first;
 /// null if the look has no occlusion or all of it is computed. Pictures use the occlusion computed so far.

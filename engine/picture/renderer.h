@@ -43,7 +43,7 @@ class Renderer {
 public:
     struct Options {
         gpu::DeviceOptions device;
-        /// Memory limits. Of the host bytes (0: 2 GiB), half are for mapped memory, a quarter for bricks cached on the
+        /// Memory limits. Half of the host bytes (0: 2 GiB) are for mapped memory, a quarter for bricks cached on the
         /// host, and a quarter for coarser levels, which are made in memory for files without levels.
         gpu::Budget budget;
         int threads = 0;  ///< workers that build bricks; 0: one per core

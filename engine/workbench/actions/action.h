@@ -28,7 +28,7 @@ struct JoinedRows {
 template <class... Joined, class... Rows, class... Tables>
 struct JoinedRows<std::tuple<Joined...>, std::tuple<Rows...>, Tables...>
     : JoinedRows<std::tuple<Joined..., Rows...>, Tables...> {};
-/// The rows in the order in which actions are listed.
+/// A tuple of the rows of all tables, in the order in which actions are listed.
 using ActionRows =
     JoinedRows<std::tuple<>, std::remove_const_t<decltype(LOOKING_ACTIONS)>,
                std::remove_const_t<decltype(SETTINGS_ACTIONS)>, std::remove_const_t<decltype(PROBE_ACTIONS)>,
@@ -37,7 +37,7 @@ using ActionRows =
                std::remove_const_t<decltype(WORK_ACTIONS)>, std::remove_const_t<decltype(WINDOW_ACTIONS)>,
                std::remove_const_t<decltype(HAND_ACTIONS)>>::Type;
 
-/// Whether a table has a row for the struct.
+/// Whether one of the tables has a row for the struct `Kind`.
 template <class Kind, class Rows = ActionRows>
 inline constexpr bool IS_ACTION = false;
 template <class Kind, class... Rows>
@@ -54,8 +54,8 @@ inline constexpr size_t INDEX_OF_KIND<Kind, std::tuple<Rows...>> = [] {
     return index;
 }();
 
-/// One of the structs that the tables list. Copies share it. Not a std::variant: its type would name every kind in
-/// every symbol, and a file that made one action took 8 s and 35 MB of object file more than now (g++ 12, -O2).
+/// Holds one of the structs in the tables; copies share it. Not a std::variant, whose type would put every struct's
+/// name into every symbol: a file that creates one action compiled 8 s longer, to 35 MB more object code (g++ 12, -O2).
 class Action {
 public:
     template <class Kind>

@@ -33,7 +33,7 @@ constexpr const auto& full_row()
 template <class Kind>
 constexpr bool IS_SCRIPT_OP = std::is_constructible_v<ScriptOp, Kind>;
 
-/// Visits the key "op", whose value names the action, and then the action's arguments.
+/// Returns a visitor of the key "op", whose value names the action, followed by the action's arguments.
 Fields::Visit with_op(std::string& op, const Fields::Visit& arguments)
 {
     return [&op, arguments](Fields& f) {
@@ -43,7 +43,7 @@ Fields::Visit with_op(std::string& op, const Fields::Visit& arguments)
     };
 }
 
-/// Returns the action with index `index` and the arguments of the line.
+/// Returns the action whose struct has the index `index`, with the arguments read from the line.
 template <size_t INDEX = 0>
 Action read_kind(size_t index, std::string& id, const JsonNode& line)
 {

@@ -15,11 +15,11 @@
 
 namespace shvr::ui {
 
-/// Returns the rows in the order of their indices.
+/// Returns the rows of all actions; the position of a row is the index of its action.
 std::span<const ActionRow> action_rows();
 const ActionRow& row_of(const Action& action);
 
-/// Returns a line of JSON that `read_action` parses as the same action.
+/// Returns the action as a line of JSON, from which `read_action` makes the same action again.
 std::string line_of(const Action& action);
 /// Adds the key "time" with the time of day (engine/annotation/script/log_time.h), which `read_action` ignores.
 std::string with_present_time(const std::string& line);
@@ -31,10 +31,10 @@ Action read_action(std::string_view line, const std::string& origin);
 std::string text_of(const Action& action);
 Action action_of_text(const std::string& text);
 
-/// Returns the reason if the action would do nothing or be refused: "nothing is open", "no node is selected"; empty: it
-/// is available. An available action may still fail for reasons that only the device or a file reveals.
+/// Returns why the action would do nothing or be refused: "nothing is open", "no node is selected"; empty if it is
+/// available. An available action may still fail for reasons that only the device or a file reveals.
 std::string why_not(const Model& model, const Action& action);
-/// Returns whether only strokes that have ended but are not painted yet block the action.
+/// Returns whether the action is unavailable only because strokes that have ended are not fully painted yet.
 bool waits_for_strokes(const Model& model, const Action& action);
 
 }  // namespace shvr::ui

@@ -1,5 +1,5 @@
 #pragma once
-// Ranges of action arguments, and arguments that several actions share.
+// Ranges of arguments of actions, and groups of arguments that several actions share.
 
 #include <optional>
 

@@ -1,6 +1,6 @@
 #pragma once
-// Conditions that several actions share. Each returns the reason why an action is unavailable now, in words that fit
-// after a colon or into a tooltip; empty if it is available. Pure; any thread.
+// Conditions that several actions share. Each function returns why an action is unavailable now, in words that fit
+// after a colon or into a tooltip; empty if the action is available. Pure; any thread.
 
 #include <cstdint>
 #include <string>
@@ -20,11 +20,11 @@ std::string why_not_edited(const Model& model);
 std::string why_not_traced(const Model& model);
 std::string why_without_selection(const Model& model);
 std::string why_without_node(const Model& model);
-/// `group`: group that the new nodes or internodes would have.
+/// `group`: the group that new nodes or internodes of the trace would belong to.
 std::string why_without_group(const Model& model, uint8_t group);
 /// Condition of an operation on groups.
 std::string why_not_operated(const Model& model, const GroupOperation& operation);
-/// `name`: name of a transfer function that the user has saved.
+/// `name`: name of a transfer function; only those that the user saved (not those that ship) can be changed.
 std::string why_not_own(const Model& model, const std::string& name);
 
 }  // namespace shvr::ui

@@ -1,6 +1,6 @@
 #pragma once
-// Operations on groups as actions: one row for each row of engine/annotation/operations/operations.h. Scripts state the
-// same lines.
+// Operations on groups as actions: one row for each row of engine/annotation/operations/operations.h. Scripts use the
+// same operations, in the same lines of JSON.
 
 #include "engine/annotation/script/script.h"
 #include "engine/workbench/actions/action_row.h"

@@ -1,5 +1,5 @@
 #pragma once
-// Actions on the haptic device ("the hand"). Devices are those of haptics/devices; the choice is kept for all scans.
+// Actions on the haptic device ("the hand"); devices are those in haptics/devices. The choice applies to all scans.
 
 #include "engine/workbench/actions/action_row.h"
 
@@ -7,11 +7,11 @@ namespace shvr::ui {
 
 class Hand;
 
-struct LetGo {  ///< switches forces off from the next tick on, until they are switched on again
+struct LetGo {  ///< switches forces off from the servo's next tick until they are switched on again
     bool on = true;
 };
 
-struct GrabVolume {  ///< the volume moves and rotates with the stylus until released; the probe stays at its voxel
+struct GrabVolume {  ///< moves and rotates the volume with the stylus until released; the probe stays on its voxel
     bool on = false;
 };
 
@@ -25,13 +25,13 @@ struct CalibrateDevice {};  ///< reopens the device, so that its rest position b
 
 /// Records the stylus's motion and forces, tick by tick, to a file (haptics/replay/README.md).
 struct RecordStylus {
-    std::filesystem::path path;  ///< empty: an unused name next to the session
+    std::filesystem::path path;  ///< empty: chooses an unused name next to the session
 };
 
 struct StopRecording {};
 
-/// Moves the probe along a recorded file, tick by tick, as a hand would under the current guidance. While the first
-/// button is down in the recording, paints or, with the trace tool, adds nodes.
+/// Moves the probe along a recorded path, tick by tick, guided by the current settings. While the recording's first
+/// button is down, the probe paints or, with the trace tool, adds nodes.
 struct FollowStylus {
     std::filesystem::path path;
     bool by_hand = true;             ///< simulates a hand with a stylus; false: replays the device's recorded responses

@@ -26,17 +26,17 @@ struct Zoom {  ///< in a slice: all slices
     double factor = 1.0;
 };
 
-/// Follows the mouse in a map: moves the camera in the map's plane, or moves the slices.
+/// Carries out a mouse drag in a map: moves the camera within the map's plane, or moves the slices.
 struct DragInMap {
     size_t pane = 0;
     glm::dvec2 pixels{0.0};
 };
 
 struct LookFrom {
-    std::string camera;  ///< name of a camera of the session, or of a side of the volume
+    std::string camera;  ///< name of one of the session's cameras, or of a side of the volume
 };
 
-/// Stores the current view as a camera; an existing camera of that name is replaced. Empty: an unused name.
+/// Stores the current view as a camera of the session, replacing a camera of that name. No name: chooses an unused one.
 struct KeepCamera {
     std::string name;
 };
@@ -55,7 +55,7 @@ struct PivotAt {
     glm::dvec2 pixel{0.0};
 };
 
-/// Moves the camera so that it looks at a voxel from the same side and distance as before.
+/// Moves the camera to look at a voxel, from the current direction and distance.
 struct GoTo {
     glm::dvec3 voxel{0.0};
 };
@@ -85,13 +85,13 @@ struct FitView {
     size_t pane = 0;  ///< if this pane shows a slice, all slices are fitted and the camera stays unchanged
 };
 
-/// Returns to the camera that the session opens with.
+/// Restores the view with which the session opens.
 struct ResetView {};
 
-/// Looks at the selection from the current distance.
+/// Points the camera at the selected part of the trace, from the current distance.
 struct LookAtSelection {};
 
-struct UpdateOcclusion {};  ///< computes occlusion again, for use when it is not updated automatically
+struct UpdateOcclusion {};  ///< computes ambient occlusion again, in case automatic updates are switched off
 
 inline constexpr const char* LOOKING_GROUP = "Looking";
 

@@ -1,5 +1,5 @@
 #pragma once
-// Actions that measure distances. Measurements last while the scan is open, and are not saved with the work.
+// Actions that measure distances. Measurements are kept while the scan is open, but are not saved.
 
 #include "engine/workbench/actions/action_row.h"
 
@@ -7,7 +7,7 @@ namespace shvr::ui {
 
 class Reader;
 
-struct MeasureAt {  ///< sets one end at the visible point; the second end completes the measurement
+struct MeasureAt {  ///< sets one end of a measurement at the visible point; the second end completes it
     size_t pane = 0;
     glm::dvec2 pixel{0.0};
 };

@@ -1,5 +1,5 @@
 #pragma once
-// Actions of the brush. The strokes that scripts paint (PaintOp) are actions, too.
+// Actions of the brush. The operation with which scripts paint strokes (PaintOp) is an action, too.
 
 #include "engine/annotation/script/script.h"
 #include "engine/session/session.h"
@@ -9,7 +9,7 @@ namespace shvr::ui {
 
 class Painter;
 
-struct Paint {  ///< begins or ends a stroke at the probe; with the trace tool, beginning a stroke adds a node
+struct Paint {  ///< begins or ends a stroke at the probe; with the trace tool, its beginning adds a node
     bool on = false;
 };
 

@@ -10,10 +10,10 @@ class Prober;
 /// Limits of the probe's radius in the interface, in voxels along x. Sessions and scripts may use other radii.
 inline constexpr double MIN_RADIUS_VOXELS = 0.5, MAX_RADIUS_VOXELS = 60.0;
 
-struct ProbeTo {  ///< moves the probe with the mouse, in the plane that contains the probe
+struct ProbeTo {  ///< moves the probe to the mouse, within the plane through the probe that is parallel to the screen
     size_t pane = 0;
     glm::dvec2 pixel{0.0};
-    bool jumps = false;  ///< the probe moves at once: an open stroke does not paint between the two places
+    bool jumps = false;  ///< true: an open stroke does not paint between the old and the new position
 };
 
 /// Moves the probe onto the visible structure: to the steepest rise of opacity along the ray (Renderer::pick).
@@ -22,16 +22,16 @@ struct ProbeOnto {
     glm::dvec2 pixel{0.0};
 };
 
-/// Moves the probe with the mouse along the visible surface. While a stroke is open, the probe's depth changes by at
-/// most its radius plus the distance it moves across the picture, so that the stroke stays on the surface where it
-/// began. If nothing is visible, the depth stays.
+/// Moves the probe to the mouse, on the visible surface. While a stroke is open, the probe's depth may change by no
+/// more than its radius plus its motion across the picture, so that the stroke stays on the surface where it began. If
+/// nothing is visible at the mouse, the depth stays.
 struct ProbeAlong {
     size_t pane = 0;
     glm::dvec2 pixel{0.0};
     bool jumps = false;
 };
 
-struct PushProbe {  ///< moves the probe by voxels: away from the viewer of a pane, to the right, and up
+struct PushProbe {  ///< moves the probe by voxels, in the directions of a pane's view: away from the viewer, right, up
     size_t pane = 0;
     double voxels = 0.0, right = 0.0, up = 0.0;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// Actions on the settings, and on the transfer functions saved for all scans (transfer_presets.h).
+// Actions on settings, and on the transfer functions that the user saves for all scans (transfer_presets.h).
 
 #include "engine/workbench/actions/action_row.h"
 
@@ -13,10 +13,10 @@ struct Set {
     std::string patch;
 };
 
-/// Adds the first unused group to the session and activates it.
+/// Adds a group with the lowest unused number to the session, and makes it the active group.
 struct NewGroup {};
 
-/// Makes one history step of all changes since the last step; the end of a drag does so, too.
+/// Records all changes of settings since the last step as one history step, as the end of a drag does.
 struct EndStep {};
 
 /// Sets the black and white levels of slices so that almost all voxel values lie between the levels.
@@ -34,7 +34,7 @@ struct ForgetPreset {
     std::string name;
 };
 
-/// Applies the transfer function in a file; the file need not be one of the saved presets.
+/// Applies the transfer function stored in a file, which need not be one of the saved presets.
 struct TakePreset {
     std::filesystem::path path;
 };

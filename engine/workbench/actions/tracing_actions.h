@@ -1,5 +1,5 @@
 #pragma once
-// Actions on the trace. The trace operations of scripts are also actions.
+// Actions on the trace. The operations with which scripts change the trace are actions, too.
 
 #include "engine/annotation/script/script.h"
 #include "engine/workbench/actions/action_row.h"
@@ -8,10 +8,10 @@ namespace shvr::ui {
 
 class Tracer;
 
-/// Maximum distance between a node and the probe at which the node counts as near, in radii of the probe.
+/// A node counts as near the probe up to this distance, in radii of the probe.
 inline constexpr double NEARBY_RADII = 4.0;
 
-struct DragNode {  ///< moves the selection with the probe until released; the whole drag is one history step
+struct DragNode {  ///< moves the selection with the probe, until released; the whole drag becomes one history step
     bool on = false;
 };
 
@@ -29,12 +29,12 @@ struct SelectAt {
     bool whole_segment = false;
 };
 
-/// Selects the node with the next number, of those that clicks and keys find, and looks at it.
+/// Selects the next node, by number, among those that clicks and keys can select, and points the camera at it.
 struct StepNode {
     bool back = false;
 };
 
-/// Links the two nodes that the last deletion disconnected.
+/// Links the two nodes that lost their connection in the last deletion.
 struct MendCut {};
 
 inline constexpr const char* TRACING_GROUP = "Tracing";

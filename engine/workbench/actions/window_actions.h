@@ -19,7 +19,7 @@ struct ChooseKeys {
     std::string set;
 };
 
-/// Binds keys to a shortcut, given by its id; `keys`: chords separated by spaces; empty: the shortcut has no key.
+/// Assigns keys to the shortcut with this id. `keys`: chords separated by spaces; empty: the shortcut has no keys.
 struct BindKeys {
     std::string shortcut, keys;
 };
@@ -29,7 +29,7 @@ struct Resize {
     glm::uvec2 pixels{0};
 };
 
-/// Waits for a key and binds the next pressed key to that shortcut; Escape keeps the binding, Delete removes the
+/// Waits for a key press, and binds that key to the shortcut; Escape keeps the old binding, Delete removes the
 /// shortcut's keys. An empty id ends the waiting.
 struct AwaitKey {
     std::string shortcut;
@@ -41,7 +41,7 @@ struct ShowHelp {
 
 struct ShowManual {};  ///< opens the user manual in the browser
 
-/// Shows all messages with their severity; messages count as read while they are shown.
+/// Shows the list of all messages with their severity; while it is shown, messages count as read.
 struct ShowMessages {
     bool on = true;
 };
@@ -51,7 +51,7 @@ struct ShowPasses {
     bool on = true;
 };
 
-/// Writes the pass times of the current picture, for later comparison.
+/// Saves the GPU times of the current picture's passes to a file, for later comparison.
 struct SavePasses {
     std::filesystem::path path;
 };
@@ -66,7 +66,7 @@ struct ShowPalette {
     bool on = true;
 };
 
-/// Changes preferences (preferences.h) by a merge patch of their file: {"theme": "light"}; null restores a default.
+/// Changes preferences (preferences.h) by a JSON merge patch, such as {"theme": "light"}; null restores a default.
 struct Prefer {
     std::string patch;
 };
@@ -75,7 +75,7 @@ struct ShowPreferences {
     bool on = true;
 };
 
-/// Gives the keyboard to the panels or to the menu, until Escape or a click.
+/// Moves the keyboard focus to the panels or to the menu, until Escape or a click.
 struct FocusOn {
     std::string what = "panels";  ///< or "menu"
 };
@@ -85,7 +85,7 @@ struct ShowFullScreen {
 };
 
 struct Quit {
-    bool saves = true;  ///< false: discards changes, as one step that can be undone: the work returns to the last save
+    bool saves = true;  ///< false: reverts the work to the last save, as one step that undo can take back
 };
 
 inline constexpr const char* WINDOW_GROUP = "Window";

@@ -23,7 +23,7 @@ struct SaveAs {
     std::filesystem::path path;  ///< the session's new file
 };
 
-/// Writes everything shown to files of another name; the document keeps its own name. Empty path: next to the session.
+/// Saves copies of everything shown under other names, without renaming the document. Empty path: next to the session.
 struct CopySession {
     std::filesystem::path path;
 };
@@ -41,16 +41,16 @@ struct Screenshot {
 struct Open {
     std::filesystem::path path;
     std::string settings{};      ///< settings for this opening, one per line, as after --set: "volume.channel=red"
-    bool saves_outside = false;  ///< the user agrees that the session may write files outside its folder
+    bool saves_outside = false;  ///< whether the user agreed that the session may write files outside its folder
 };
 
-/// Inspects a file for the open dialog, without reading its voxels; the result is Model::candidate.
+/// Inspects a file for the open dialog, without reading voxels. The result appears in Model::candidate.
 struct LookAtFile {
     std::filesystem::path path;  ///< empty: ends the inspection
     std::string settings{};      ///< as in Open
 };
 
-/// The use of a file, either detected from its contents or stated by the user.
+/// How a file is to be used: as its contents suggest, or as the user states.
 enum class FileUse { by_contents, scan, mask, offsets, trace, look };
 inline constexpr Spelling<FileUse> FILE_USES[] = {
     {FileUse::by_contents, "by_contents"}, {FileUse::scan, "scan"},   {FileUse::mask, "mask"},
@@ -63,27 +63,27 @@ constexpr std::span<const Spelling<FileUse>> spellings_of(FileUse)
 /// Takes a file dropped onto the window. Volumes, sessions, projects and pictures are opened; annotation and transfer
 /// functions are added to the open document, as steps that can be undone. The contents decide the kind of file; if they
 /// fit both a scan and annotation, the user is asked (Model::unclear_file). If several files are dropped and one of
-/// them can be opened, the other files are added to it.
+/// them can be opened, the others are added to that document.
 struct TakeFile {
     std::filesystem::path path;
     std::string beside{};  ///< paths of the other files dropped together with this one, one per line
     FileUse use = FileUse::by_contents;
 };
 
-/// Loads annotation or a transfer function into the open document, as a step that can be undone. Opens no document.
+/// Adds annotation or a transfer function to the open document, as a step that can be undone; opens no document.
 struct LoadAnnotation {
     std::filesystem::path path;
     FileUse what = FileUse::by_contents;
 };
 
-/// Reads annotation or a transfer function, and states what loading it would change (Model::load_preview); loads
-/// nothing. A LoadAnnotation of the same file then loads what was read.
+/// Reads annotation or a transfer function and states what loading it would change (Model::load_preview), without
+/// loading it. A LoadAnnotation of the same file then does not read the file again.
 struct PreviewLoad {
     std::filesystem::path path;  ///< empty: ends the preview
     FileUse what = FileUse::by_contents;
 };
 
-/// Dismisses the question about a dropped file; the file is not used.
+/// Closes the question about the kind of a dropped file, without using the file.
 struct DismissUnclearFile {};
 
 /// Corrects the volume's spacing: saves the work, and reopens it with the new spacing. Positions in voxels stay.
@@ -95,12 +95,12 @@ struct CorrectSpacing {
 /// Marks the notes about recovered work as read.
 struct DismissNotices {};
 
-/// Removes a path from the list of recently opened paths; the file stays.
+/// Removes a path from the list of recently opened paths, without touching the file.
 struct ForgetRecent {
     std::filesystem::path path;
 };
 
-/// Chooses between the journal and annotation files that another program changed; using the files can be undone.
+/// Chooses between the journal's annotation and files that another program changed. Using the files can be undone.
 struct ChooseBelief {
     bool takes_files = false;
 };

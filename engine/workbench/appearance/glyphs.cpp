@@ -4,7 +4,7 @@ namespace shvr::ui {
 
 namespace {
 
-// Latin and its extensions; dashes, quotes and dots; arrows and other symbols that panels use.
+// Latin letters; dashes, quotation marks and dots; arrows and other symbols that panels use.
 constexpr std::pair<uint32_t, uint32_t> ALWAYS[] = {{0x20, 0x7e},     {0xa0, 0x17f},    {0x2010, 0x2026},
                                                     {0x2190, 0x2195}, {0x221a, 0x221a}, {0x2248, 0x2248},
                                                     {0x2264, 0x2265}, {0xfffd, 0xfffd}};

@@ -1,6 +1,6 @@
 #pragma once
-// The characters that the font must contain: those of European languages always, others once a text uses them. Pure;
-// one thread.
+// The characters that the font must contain: those of European languages, and any others that occur in displayed texts.
+// Pure; one thread.
 
 #include <bitset>
 #include <cstdint>

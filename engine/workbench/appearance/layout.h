@@ -1,6 +1,6 @@
 #pragma once
-// The panels, their positions, and the part of the window left for the picture. Lengths are in font sizes unless stated
-// otherwise, so that a layout fits every scale. Pure; any thread.
+// Positions of the panels, and the part of the window that remains for the picture. Lengths are in font sizes unless
+// stated otherwise, so that a layout fits every scale. Pure; any thread.
 
 #include <map>
 #include <optional>

@@ -1,7 +1,7 @@
 #pragma once
-// The colours of the interface by purpose, in two themes. Every text is readable on every surface: the contrast as
-// defined by WCAG 2.1 is at least MIN_TEXT_CONTRAST, even if a widget is greyed (tests/unit/ui/theme_test.cpp). Pure;
-// any thread.
+// Colours of the interface, named by purpose, in two themes. Text is readable on every surface: the contrast, as
+// defined by WCAG 2.1, is at least MIN_TEXT_CONTRAST, even for greyed widgets (tests/unit/ui/theme_test.cpp). Pure; any
+// thread.
 
 #include <array>
 #include <span>
@@ -24,7 +24,7 @@ enum class ColorRole {
     // Texts
     text,
     faint_text,  ///< hints, keys, disabled items
-    warning,     ///< colour of a warning mark; a word or icon next to the mark gives its meaning
+    warning,     ///< colour of a warning mark; its meaning is given by a word or icon next to the mark
     error,
     accent_text,  ///< headings
     // Surfaces that texts stand on

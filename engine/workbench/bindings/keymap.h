@@ -35,8 +35,8 @@ public:
     /// Fails if an id is not that of a shortcut, or a text is not a chord.
     explicit Keymap(KeySet set = KeySet::modern, const Changes& changes = {});
 
-    /// Returns the shortcuts bound to this chord: one, unless the user bound a chord twice. A shortcut that Shift slows
-    /// down is also returned for its chord with Shift added.
+    /// Returns the shortcuts bound to this chord: usually one, more if the user bound a chord twice. A shortcut that
+    /// Shift slows down is found with and without Shift.
     std::vector<const Shortcut*> shortcuts_for(const Chord& chord) const;
     /// Returns the chords of a shortcut.
     const std::vector<Chord>& chords_of(const Shortcut& shortcut) const;

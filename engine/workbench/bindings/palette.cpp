@@ -21,7 +21,7 @@ bool is_action_id(std::string_view word)
     return std::ranges::any_of(action_rows(), [&](const ActionRow& row) { return row.id == word; });
 }
 
-/// Returns the table of settings, which is built once, since it does not change.
+/// Returns the table of settings. The table never changes, so it is built only once.
 const std::vector<SessionKey>& keys_of_settings()
 {
     static const std::vector<SessionKey> KEYS = keys_of([](Fields& f) {
@@ -31,7 +31,7 @@ const std::vector<SessionKey>& keys_of_settings()
     return KEYS;
 }
 
-/// Returns whether a setting's name or meaning has all the words. One of many, "points.N", is not found by words.
+/// Returns whether name or meaning of the setting contain all words. Settings in lists, as "points.N", are never found.
 bool is_found(const SessionKey& key, std::string_view words)
 {
     std::string where = key.name + ' ' + key.meaning;
@@ -41,7 +41,7 @@ bool is_found(const SessionKey& key, std::string_view words)
     return !is_one_of_many && has_words(where, words);
 }
 
-/// Returns whether an action does not stand alone: its text goes on with arguments.
+/// Returns whether the action needs arguments after its id in order to be valid.
 bool takes_arguments(const std::string& id)
 {
     try {
@@ -111,7 +111,7 @@ void add_values(std::vector<PaletteEntry>& entries, const Model& model, std::str
     }
 }
 
-/// Adds actions found by the beginning of their id, and settings found by words or by the beginning of their key.
+/// Adds actions whose id begins with the text, and settings that are found by words or whose key begins with it.
 void add_completions(std::vector<PaletteEntry>& entries, std::string_view text)
 {
     if (text.empty() || text.find('=') != std::string_view::npos) return;
@@ -144,7 +144,7 @@ std::vector<PaletteEntry> palette_entries(const Model& model, std::string_view t
     text = trimmed(text);
     std::vector<PaletteEntry> entries, as_typed;
     add_typed(as_typed, model, text);
-    // A typed action that is unavailable may be meant as the beginning of a shortcut's name, so shortcuts come first.
+    // An unavailable typed action may also be the beginning of a shortcut's name, so shortcuts are listed before it.
     const bool is_done = !as_typed.empty() && as_typed.front().why_not.empty();
     if (is_done) entries = as_typed;
     add_shortcuts(entries, model, text);
@@ -152,7 +152,7 @@ std::vector<PaletteEntry> palette_entries(const Model& model, std::string_view t
         add_values(entries, model, text);
         add_listed(entries, model, text);
     }
-    // The bare name of an action lacks its arguments: it is completed, not refused, if words find something else.
+    // An action typed without arguments is invalid, but the completions below offer it; hides the error if words match.
     if (!entries.empty() && text.find_first_of(" =") == text.npos) as_typed.clear();
     if (!is_done) entries.insert(entries.end(), as_typed.begin(), as_typed.end());
     add_completions(entries, text);

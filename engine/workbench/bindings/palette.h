@@ -16,14 +16,14 @@ namespace shvr::ui {
 struct PaletteEntry {
     std::string name, group;
     std::string keys{};              ///< keys as displayed
-    std::string why_not{};           ///< reason why the entry is unavailable now; empty: available
+    std::string why_not{};           ///< reason why the entry is unavailable now; empty if it is available
     std::optional<Action> action{};  ///< action that the entry performs
-    std::string completion{};        ///< text that continues the input; if set, the entry has no action
+    std::string completion{};        ///< text to replace the input with; an entry that has a completion has no action
     std::optional<Action> then{};    ///< performed after `action`
 };
 
 /// Returns entries, best match first: a typed action or setting, shortcuts and panels, settings with a typed value,
-/// items of the scan, then possible completions of the text. No text: all shortcuts.
+/// items of the scan, then possible completions of the text. For an empty text, returns all shortcuts.
 std::vector<PaletteEntry> palette_entries(const Model& model, std::string_view text);
 
 /// Returns whether each word of `text` occurs in `where`, ignoring case.

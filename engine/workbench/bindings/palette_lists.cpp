@@ -39,7 +39,7 @@ private:
     size_t left_ = MAX_OF_A_KIND;
 };
 
-/// Shows a panel, unfolded. One that floats goes on floating.
+/// Returns the action that shows a panel, unfolded. A floating panel keeps floating.
 Action shown_panel(const PanelRow& row, const WindowLayout& layout)
 {
     const PanelPlace place = layout.place_of(row);

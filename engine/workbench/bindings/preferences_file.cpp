@@ -17,7 +17,7 @@ namespace {
 
 constexpr int64_t MAX_BYTES = int64_t{1} << 20;
 
-/// Moves key changes that no keymap can use from `keys` to `unusable_keys`. Returns the reason for each.
+/// Moves key changes that no keymap accepts from `keys` to `unusable_keys`. Returns the reasons, one for each change.
 std::vector<std::string> take_out_unusable(Preferences& preferences)
 {
     std::vector<std::string> reasons;
@@ -112,7 +112,7 @@ void fields(Fields& f, Preferences& preferences)
     });
     f.choice("puck", preferences.puck, {});
     f.whole("hints_seen", preferences.hints_seen, 0, 1000, {});
-    preferences.keys.merge(preferences.unusable_keys);  // a usable change of the same shortcut takes precedence
+    preferences.keys.merge(preferences.unusable_keys);  // if both change one shortcut, the usable change wins
     preferences.unusable_keys.clear();
     key_fields(f, preferences.keys);
     std::vector<RecentFile> recent;
@@ -140,7 +140,7 @@ Preferences patched(const Preferences& preferences, std::string_view patch)
     return read;
 }
 
-/// Writes only what changed: members missing from a patch keep their values.
+/// Writes only the members that changed: a patch leaves all others at their values.
 std::string patch_of_panel(const std::string& id, const PanelLayout& change)
 {
     std::string parts;

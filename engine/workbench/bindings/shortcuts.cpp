@@ -25,7 +25,7 @@ constexpr double BLEND_STEP = 0.05;
 constexpr double STRENGTH_STEP = 0.05;
 constexpr double MAX_BLEND = 20.0;
 
-// ---- Actions. Those with parameters appear several times in the table.
+// ---- Functions that make actions. Templates with parameters appear several times in the table.
 
 template <class Kind>
 Action plain(const Model&, double)
@@ -62,14 +62,14 @@ Action at_pane(const Model& model, double)
     return action;
 }
 
-/// Moves the probe by a voxel in a direction relative to the pane under the pointer.
+/// Moves the probe by a voxel in a direction of the view in the pane under the pointer.
 template <int AWAY, int RIGHT, int UP>
 Action step_probe(const Model& model, double amount)
 {
     return PushProbe{model.pointer ? model.pointer->pane : 0, AWAY * amount, RIGHT * amount, UP * amount};
 }
 
-/// Looks from saved view number NUMBER, in the order of names; the window's own view is not counted.
+/// Shows saved view number NUMBER, in alphabetical order; the camera of the window itself is not counted.
 template <size_t NUMBER>
 Action look_from_kept(const Model& model, double)
 {
@@ -241,7 +241,7 @@ Action move_clip(const Model&, double amount)
 template <double DistanceBlend::*VALUE, int DIRECTION>
 Action blend(const Model& model, double amount)
 {
-    // A size above 1 makes everything white behind the depth at which it reaches 1.
+    // The size is limited to 1, since a larger one hides everything behind some depth in the blend colour.
     constexpr double MOST = VALUE == &DistanceBlend::size ? 1.0 : MAX_BLEND;
     return edited(model.session, [&](Session& s) {
         const double next = std::clamp(s.blend.*VALUE + BLEND_STEP * DIRECTION * amount, 0.0, MOST);
@@ -281,7 +281,7 @@ Action neighbour_group(const Model& model, double)
     return edited(model.session, [&](Session& s) { s.probe.brush.group = next_group(model, DIRECTION); });
 }
 
-/// Closes the frontmost dialog; without a dialog, selects the mouse's turn tool.
+/// Closes the frontmost dialog or, if there is none, selects the tool with which the mouse turns the view.
 Action step_back(const Model& model, double amount)
 {
     if (model.shows_palette) return ShowPalette{false};
@@ -513,7 +513,7 @@ constexpr Shortcut SHORTCUTS[] = {
     both("move_back", MOVE_KEYS, "Move back", Mode::hold, move<0, 0, -1>, "S", true),
     both("move_left", MOVE_KEYS, "Move left", Mode::hold, move<-1, 0, 0>, "A", true),
     both("move_right", MOVE_KEYS, "Move right", Mode::hold, move<1, 0, 0>, "D", true),
-    // Thesis 4.2.3: Q moves up and E down; today's programs do the opposite.
+    // In the thesis (4.2.3), Q moves up and E down; here Q moves down and E up, as in today's programs.
     {"move_down", MOVE_KEYS, "Move down", Mode::hold, move<0, -1, 0>, {"Q", "E"}, true},
     {"move_up", MOVE_KEYS, "Move up", Mode::hold, move<0, 1, 0>, {"E", "Q"}, true},
 

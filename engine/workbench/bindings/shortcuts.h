@@ -1,7 +1,7 @@
 #pragma once
-// Shortcuts for keys, menu items, the palette and stylus buttons. A shortcut is an action with its own name; its
-// arguments depend on the current state. Two sets of keys ship: today's conventions, and the thesis's appendix C as
-// printed. Pure; any thread.
+// Shortcuts for keys, menu items, the palette and stylus buttons. A shortcut is a named action whose arguments depend
+// on the current state. Two sets of keys ship: today's conventions, and those of the thesis as printed in its appendix
+// C. Pure; any thread.
 
 #include <array>
 #include <span>
@@ -25,12 +25,12 @@ struct Shortcut {
     const char* group = "";  ///< heading in menus, help and palette
     const char* name = "";   ///< "Undo"
     Mode mode = Mode::tap;
-    /// `amount`: 1 for a tap, less with Shift; 5 per second while the key is held; for `while_held`, 1 at the start and
-    /// 0 at the end.
+    /// `amount`: 1 for a tap, less with Shift; 5 per second while a key is held. In mode `while_held`: 1 at the start
+    /// and 0 at the end.
     Action (*action)(const Model& model, double amount) = nullptr;
-    /// Chords by KeySet, separated by spaces: "Ctrl+Y Ctrl+Shift+Z" (keymap.h).
+    /// Default chords in each KeySet, separated by spaces: "Ctrl+Y Ctrl+Shift+Z" (keymap.h).
     std::array<const char*, 2> keys{"", ""};
-    bool is_by_position = false;  ///< the letter means the key at its position on an American keyboard
+    bool is_by_position = false;  ///< the letter means the key at that letter's position on an American keyboard
 
     bool is_slowed() const { return mode == Mode::step || mode == Mode::hold; }
 };

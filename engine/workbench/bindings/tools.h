@@ -13,16 +13,16 @@ struct ToolRow {
     const char* name = "";      ///< "Paint"
     const char* shortcut = "";  ///< id of the shortcut that selects the tool
     const char* hint = "";      ///< effect of a click, in sentences
-    const char* left = "";      ///< effect of the left button, in a few words
+    const char* left = "";      ///< effect of the left mouse button, in a few words
     const char* right = "";
 };
 /// Returns all tools, in the order of the tool bar.
 std::span<const ToolRow> tool_rows();
 const ToolRow& row_of(Tool tool);
 
-/// Returns the message shown when the tool is selected.
+/// Returns the message that is shown when the user selects the tool.
 std::string sentence_of(Tool tool);
-/// Describes the mouse over a pane of kind `over`, in one line: "left: paint, right or middle: turn, wheel: zoom".
+/// Describes buttons and wheel over a pane of kind `over`: "left: paint, right or middle: turn, wheel: zoom".
 std::string mouse_in_words(Tool tool, Pane::Kind over = Pane::Kind::main);
 
 }  // namespace shvr::ui
