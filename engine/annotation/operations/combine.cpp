@@ -7,7 +7,7 @@ namespace shvr {
 
 namespace {
 
-/// The group that a voxel gets if it is now in `group`, and if it is in `with`.
+/// The new groups of voxels that are now in `group`, and of those that are now in `with`.
 struct Replacement {
     uint8_t of_group, of_with;
 };

@@ -1,8 +1,8 @@
-// Fills between painted slices: a slice between two gets what both shapes share, and of what one has alone the voxels
-// whose signed distances from the two outlines, weighted by the slices' distances, sum to at most 0.
+// Fills between painted slices: a voxel of a slice in between is filled if its signed distances from the outlines in
+// the two painted slices (negative inside), interpolated linearly, are at most 0.
 //
-// A gap is filled slice by slice, with maps of the rectangle around its two shapes; bricks of the result are held until
-// their layer is complete.
+// A gap is filled slice by slice, with distance maps of the rectangle around its two shapes. Bricks of the result are
+// kept in memory until their layer of bricks is complete.
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ namespace shvr {
 
 namespace {
 
-/// A part of a slice: a box with one voxel along the axis across. Its pixels are counted along u first.
+/// Axes u and v of a slice, and the axis across it. A part of a slice is a box one voxel thick; u is fastest in memory.
 struct Slicing {
     int u = 0, v = 1, across = 2;
     explicit Slicing(FillBetweenOp::Axis axis)
@@ -51,9 +51,9 @@ public:
     {
         for_each_brick(edit.mask(), progress, [&](int64_t brick) { add(brick); });
     }
-    /// The box around the voxels of each slice.
+    /// For each painted slice, the box around its voxels.
     const std::map<int64_t, VoxelBox>& boxes() const { return boxes_; }
-    /// Whether each pixel of a slice's part is in the group; beyond the volume none is.
+    /// Whether each pixel of a part of a slice is in the group; pixels beyond the volume's border are not.
     std::vector<uint8_t> shape(int64_t slice, const VoxelBox& part);
 
 private:
@@ -63,7 +63,7 @@ private:
     uint8_t group_;
     Slicing slicing_;
     std::map<int64_t, VoxelBox> boxes_{};
-    std::map<int64_t, std::vector<int64_t>> layers_{};  ///< bricks of the group by their places along the axis
+    std::map<int64_t, std::vector<int64_t>> layers_{};  ///< bricks of the group, by their layer along `across`
 };
 
 void PaintedSlices::add(int64_t brick)
@@ -107,7 +107,7 @@ std::vector<uint8_t> PaintedSlices::shape(int64_t slice, const VoxelBox& part)
     return shape;
 }
 
-/// The squared distance of each pixel to the nearest one that is `wanted`.
+/// The squared distance of each pixel to the nearest pixel whose value in `shape` is `wanted`.
 std::vector<double> squared_distances(std::span<const uint8_t> shape, uint8_t wanted, int64_t width, int64_t height,
                                       const glm::dvec2& spacing)
 {
@@ -134,8 +134,8 @@ std::vector<double> squared_distances(std::span<const uint8_t> shape, uint8_t wa
     return squared;
 }
 
-/// The distance of each pixel from the other side of the outline: below 0 in the shape. The part reaches beyond the
-/// shape on all sides, so the nearest pixel outside lies in it.
+/// The distance of each pixel to the nearest pixel on the other side of the outline; negative inside the shape. The
+/// part extends beyond the shape on all sides, so it contains the nearest pixel outside.
 std::vector<double> signed_distances(std::span<const uint8_t> shape, int64_t width, int64_t height,
                                      const glm::dvec2& spacing)
 {
@@ -146,7 +146,7 @@ std::vector<double> signed_distances(std::span<const uint8_t> shape, int64_t wid
     return distances;
 }
 
-/// Most bytes that a pixel takes: two shapes, and three maps of distances at a time.
+/// Greatest memory per pixel: two shapes, and three distance maps at a time.
 constexpr uint64_t BYTES_OF_PIXEL = 2 + 3 * sizeof(double);
 
 class GapFiller {
@@ -154,10 +154,10 @@ public:
     GapFiller(const FillBetweenOp& op, MaskEdit& edit, PaintedSlices& slices)
         : edit_(edit), slices_(slices), group_(uint8_t(op.group)), slicing_(op.axis)
     {}
-    /// Fills between two painted slices, each given with its box.
+    /// Fills the slices between two painted slices, each given with the box around its voxels.
     void fill(const std::pair<const int64_t, VoxelBox>& from, const std::pair<const int64_t, VoxelBox>& to,
               const Progress& progress);
-    /// Hands the bricks before a layer to the edit; they are complete.
+    /// Passes pending bricks to the edit if they lie before `layer`, because no later slice changes them.
     void finish_before(int64_t layer);
 
 private:
@@ -174,7 +174,7 @@ private:
     PaintedSlices& slices_;
     uint8_t group_;
     Slicing slicing_;
-    VoxelBox part_{};  ///< around both shapes, and a pixel more on all sides
+    VoxelBox part_{};  ///< box around both shapes, enlarged by a pixel on all sides
     std::vector<double> from_{}, to_{};
     std::map<int64_t, BrickBits> pending_{};
     int64_t pending_layer_ = 0;

@@ -1,7 +1,7 @@
-// Holes of a group: components, joined over faces, of the voxels outside the group that do not reach the volume's
-// border. Bricks without a voxel of the group are not visited one by one: between two bricks of the group in the same
-// row of bricks they form a gap, which is one node; a row of bricks without the group, and the part of a row beyond its
-// first and last bricks, reach the border. So the cost follows the bricks of the group, and the holes that are filled.
+// Holes of a group: components, connected over faces, of voxels outside the group that do not reach the volume's
+// border. Bricks without the group are not visited one by one: between two bricks of the group in a row of bricks they
+// form a gap, one node of the union-find. Rows of bricks without the group reach the border, as do the bricks of a row
+// before its first and after its last brick of the group. The cost depends on the group's bricks and the holes.
 
 #include <map>
 
@@ -18,20 +18,20 @@ class Outside {
 public:
     Outside(const Mask& mask, MaskEdit& edit, uint8_t group, const Progress& progress);
     bool is_hole(uint32_t label) { return components_.root_of(label) != components_.root_of(outside_); }
-    /// Calls `fill(brick, bits, is_whole)` for each brick with voxels of holes: those of `bits`, or all of them.
-    /// Returns the number of holes.
+    /// Calls `fill(brick, bits, is_whole)` for each brick with voxels of holes. `is_whole`: all voxels of the brick are
+    /// in a hole; otherwise only those of `bits`. Returns the number of holes.
     template <class Fill>
     int64_t for_each_hole(const Fill& fill);
 
 private:
-    /// Bricks of the group in one row of bricks, by x; each with the label of the gap on its left.
+    /// The group's bricks in one row of bricks, by x, each with the label of the gap on its left.
     using Row = std::map<int64_t, uint32_t>;
     const Row* row_at(int64_t y, int64_t z) const
     {
         const auto found = rows_.find({z, y});
         return found == rows_.end() ? nullptr : &found->second;
     }
-    /// The label of a brick that has no voxel of the group, or lies beyond the border.
+    /// The label of a brick without voxels of the group, or of a position beyond the border.
     uint32_t label_of_gap(const Size3& at) const;
     void join_brick(int64_t brick);
     void join_gap(const Size3& from, int64_t to_x, uint32_t label);
@@ -93,7 +93,7 @@ void Outside::join_brick(int64_t brick)
         }
 }
 
-/// Joins a gap, `from` up to `to_x`, to the gaps next to it in neighbouring rows.
+/// Joins a gap, the bricks from `from` up to x = `to_x`, with the gaps next to it in neighbouring rows of bricks.
 void Outside::join_gap(const Size3& from, int64_t to_x, uint32_t label)
 {
     for (const Size3& step : {Size3(0, -1, 0), Size3(0, 1, 0), Size3(0, 0, -1), Size3(0, 0, 1)}) {
@@ -103,7 +103,7 @@ void Outside::join_gap(const Size3& from, int64_t to_x, uint32_t label)
             components_.join(label, outside_);
             continue;
         }
-        // Gaps between the bricks of that row: the one at `from`, and one after each brick next to this gap.
+        // The gaps of the neighbouring row that touch this one: the gap next to `from`, and one after each brick.
         if (!row->contains(from.x)) components_.join(label, label_of_gap(beside));
         for (auto brick = row->lower_bound(from.x); brick != row->end() && brick->first + 1 < to_x; ++brick) {
             const int64_t after = brick->first + 1;

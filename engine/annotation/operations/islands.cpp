@@ -1,4 +1,4 @@
-// Connected parts of a group: which stay, and which group each gets.
+// Connected parts of a group: decides which parts stay, and which group each part gets.
 
 #include <algorithm>
 #include <unordered_map>
@@ -16,7 +16,7 @@ namespace {
 struct Island {
     uint32_t root = 0;
     int64_t voxels = 0;
-    Size3 first{0};  ///< the first voxel, by z, then y, then x
+    Size3 first{0};  ///< the first voxel in the order of z, then y, then x
 };
 
 bool is_before(const Size3& a, const Size3& b)
@@ -41,7 +41,7 @@ void for_each_run(const BrickComponents& components, int64_t brick, const Visit&
         for (const BrickComponents::Run& run : components.runs(brick, row)) visit(row, run);
 }
 
-/// The islands, the largest first; of two of the same size the one whose first voxel comes first.
+/// The islands, largest first; islands of equal size are sorted by their first voxels.
 std::vector<Island> islands_in(BrickComponents& components, const Mask& mask)
 {
     std::unordered_map<uint32_t, Island> found;
@@ -73,7 +73,7 @@ int64_t fewest_voxels(const IslandsOp& op, const VolumeInfo& volume)
              "; expected a unit of length (--spacing, --unit), or voxels instead");
     const glm::dvec3 side = volume.spacing * (*micrometres / 1000.0);
     const double voxels = *op.mm3 / (side.x * side.y * side.z);
-    // A part of exactly this volume stays, whatever the rounding of the quotient.
+    // Tolerates the rounding of the quotient, so that a part of exactly this volume stays.
     return int64_t(std::min(std::ceil(voxels * (1.0 - 1e-12)), 9e18));
 }
 
@@ -91,7 +91,7 @@ uint32_t root_at(BrickComponents& components, const IslandsOp& op, const Mask& m
          " is; expected a position in it");
 }
 
-/// The group that each island gets, by root.
+/// The new group of each island, by the island's root label; 0: erased.
 std::unordered_map<uint32_t, uint8_t> groups_of(const IslandsOp& op, BrickComponents& components,
                                                 const std::vector<Island>& islands, const MaskEdit& edit)
 {

@@ -33,7 +33,7 @@ std::string joined(const std::vector<std::string>& items)
     return list;
 }
 
-/// The most frequent changes of group, each with its number of voxels.
+/// Describes the most frequent changes from one group to another, each with its number of voxels.
 std::string moved_in_words(const OperationResult& result, const GroupNames& name_of)
 {
     constexpr size_t MOST = 4;

@@ -1,7 +1,7 @@
 #pragma once
-// Collects what an operation wants to change, brick by brick, and decides which voxels may: locks, limits and the
-// volume's border apply here and nowhere else. The result is the records of one undoable step, and counts of the work.
-// One thread.
+// Collects the changes that an operation wants, brick by brick, and decides which voxels may change: locks, limits and
+// the volume's border are applied only here. The result is the records of one undoable step, with counts of changes and
+// of bricks read and written. One thread.
 
 #include <functional>
 #include <map>
@@ -19,14 +19,14 @@
 
 namespace shvr {
 
-/// What operations read. Bricks of a mask are immutable, so a copy of a mask may be read on another thread.
+/// The input of operations. Bricks of a mask are immutable, so a copy of a mask may be read on another thread.
 struct OperationInput {
     const Mask& mask;
     const VolumeInfo& volume;
-    const VolumeSource* source = nullptr;  ///< intensities, with density offsets; null: none can be read
+    const VolumeSource* source = nullptr;  ///< intensities, with density offsets; null if there are none
     const TraceGraph* trace = nullptr;     ///< null: there is none
     GroupSet locked{};
-    uint64_t memory = 0;  ///< most bytes that an operation may take for itself; 0: any number
+    uint64_t memory = 0;  ///< most bytes that the operation itself may allocate; 0: no limit
 };
 
 struct OperationResult {
@@ -35,14 +35,14 @@ struct OperationResult {
     int64_t voxels = 0;  ///< that change their group
     /// Voxels by their groups before and after.
     std::map<std::pair<uint8_t, uint8_t>, int64_t> moved{};
-    StrokeResult::ByGroup kept_locked{};  ///< voxels that stay, because their group or the new one (the key) is locked
+    StrokeResult::ByGroup kept_locked{};  ///< by group: voxels unchanged because it, their own or new one, is locked
     int64_t kept_by_limits = 0;           ///< voxels that stay because of OperationLimits
     std::string note{};                   ///< what the operation found, as in "3 holes"
-    /// Work: bricks of the mask looked at, each time that one is; bricks changed; bricks of intensities read.
+    /// Cost: number of mask bricks read (each read counts), of bricks changed, and of intensity bricks read.
     int64_t bricks_read = 0, bricks_written = 0, bricks_of_intensities = 0;
 };
 
-/// "Fill holes: 120 voxels were painted in group 3 (wood); 7 voxels of group 2 are locked and stayed".
+/// "Fill holes: 120 voxels painted in group 3 (wood); 2 holes; group 2 is locked, so 7 voxels stayed".
 std::string sentence_of(const OperationResult& result, const std::string& title, const GroupNames& name_of);
 
 class MaskEdit {
@@ -55,13 +55,13 @@ public:
     /// Fails if the input has none.
     const VolumeSource& source() const;
     void count_intensities(int64_t bricks) { result_.bricks_of_intensities += bricks; }
-    /// Fails if an operation that is about to take this many bytes may not.
+    /// Fails if this many bytes, which the operation is about to allocate, exceed its memory budget.
     void check_memory(uint64_t bytes) const;
-    /// A brick of the mask, all zeros if unpainted; counted.
+    /// Returns a brick of the mask, all zeros if it is unpainted, and counts the read.
     const MaskBrick& read(int64_t brick);
-    /// Whether any voxel of the brick lies in the limits' box; if not, wanting it has no effect.
+    /// Whether any voxel of the brick lies in the limits' box. If none does, `want` ignores the brick.
     bool may_change(int64_t brick) const;
-    /// Changes the voxels of a brick to `wanted`, as far as they may change. Each brick at most once.
+    /// Records the change of a brick to `wanted`, except for voxels that may not change. Call at most once per brick.
     void want(int64_t brick, const MaskBrick& wanted);
     void change_trace(std::vector<TraceChange> changes) { result_.trace_changes = std::move(changes); }
     void note(std::string text) { result_.note = std::move(text); }
@@ -74,7 +74,7 @@ private:
     const OperationInput& input_;
     const OperationLimits& limits_;
     OperationResult result_;
-    int64_t intensities_of_ = -1;  ///< the brick whose intensities are in `intensities_`
+    int64_t intensities_of_ = -1;  ///< the brick whose voxels' intensities are in `intensities_`
     std::vector<double> intensities_;
     uint64_t bytes_ = 0;
 };

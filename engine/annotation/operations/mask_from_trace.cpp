@@ -1,5 +1,5 @@
-// Trace to mask. The volume is halved until boxes are bricks, and a box goes on only with the shapes that reach into
-// it; so a trace costs the bricks that it meets, and one brick is held at a time.
+// Trace to mask. The volume is bisected down to single bricks, and each half is searched only for the shapes that reach
+// into it. So the cost depends on the bricks that the trace meets, and only one brick is in memory at a time.
 
 #include <algorithm>
 #include <numeric>
@@ -34,7 +34,7 @@ private:
     void paint(const VoxelBox& bricks, std::span<const uint32_t> shapes, double done, double share);
     void paint_brick(int64_t brick, std::span<const uint32_t> shapes);
     void paint_rows(const TraceShape& shape, const VoxelBox& box, MaskBrick& wanted) const;
-    /// The shapes with a point in the ball around the centres of a box's voxels.
+    /// The shapes that intersect the smallest ball around the centres of a box's voxels.
     std::vector<uint32_t> reaching(const VoxelBox& voxels, std::span<const uint32_t> shapes) const;
     glm::dvec3 middle_of(const VoxelBox& voxels) const
     {
@@ -62,7 +62,7 @@ std::vector<uint32_t> TracePainter::reaching(const VoxelBox& voxels, std::span<c
     return found;
 }
 
-/// `bricks`: a box of bricks; `done`, `share`: its part of the progress.
+/// `bricks`: a box of bricks; `done`, `share`: start and size of its part of the progress.
 void TracePainter::paint(const VoxelBox& bricks, std::span<const uint32_t> shapes, double done, double share)
 {
     const VoxelBox voxels{bricks.lower * BRICK_SIDE, glm::min(bricks.upper * BRICK_SIDE, edit_.mask().size())};

@@ -8,7 +8,7 @@ namespace shvr {
 
 namespace {
 
-/// a with those of b, or without those.
+/// Union and difference of two sets: the voxels of `a` with, or without, those of `b`.
 BrickSet united(BrickSet a, const BrickSet& b)
 {
     for (const auto& [brick, bits] : b) {
@@ -39,7 +39,7 @@ BrickSet grown(const BrickSet& set, const Reach& reach, const Progress& progress
     return voxels_near(set, false, bricks, reach, progress);
 }
 
-/// The voxels of the set within reach of the volume outside it.
+/// The voxels of the set within reach of a voxel outside the set.
 BrickSet rim_of(const BrickSet& set, const Reach& reach, const Progress& progress)
 {
     const BrickSet near = voxels_near(set, true, bricks_of(set), reach, progress);
@@ -51,7 +51,7 @@ BrickSet shrunk(const BrickSet& set, const Reach& reach, const Progress& progres
     return without(set, rim_of(set, reach, progress));
 }
 
-/// A group as a set, changed by `change`, and wanted in place of what it was.
+/// Passes the group's voxels to `change` as a set, and replaces the group by the set that `change` returns.
 template <class Change>
 void replace(int64_t group, MaskEdit& edit, const Progress& progress, const Change& change)
 {

@@ -1,6 +1,6 @@
 #pragma once
-// Limits that every operation on groups takes: they state which voxels may change, never what the operation looks at.
-// So growing inside a box sees the group outside the box, too. Locks of groups come from the session (MaskEdit).
+// Limits of an operation: they restrict which voxels may change, not which voxels the operation reads. So growing in a
+// box also starts from the group's voxels outside it. Locks of groups come from the session (MaskEdit).
 
 #include <functional>
 #include <optional>
@@ -14,16 +14,16 @@
 namespace shvr {
 
 struct OperationLimits {
-    std::optional<glm::dvec2> within{};  ///< only voxels of these intensities, both ends inclusive
+    std::optional<glm::dvec2> within{};  ///< only voxels with intensities in this range, both ends inclusive
     std::optional<int64_t> inside{};     ///< only voxels of this group; 0: unpainted ones
-    bool only_unpainted = false;         ///< no voxel is taken from any group, so nothing is erased either
-    std::optional<VoxelBox> box{};       ///< only voxels of this box; null: of the whole volume
+    bool only_unpainted = false;         ///< only unpainted voxels, so no group loses voxels
+    std::optional<VoxelBox> box{};       ///< only voxels in this box; null: in the whole volume
 };
 
-/// Reads "[x0,y0,z0,x1,y1,z1]", half-open, in voxels; refuses boxes without a voxel.
+/// Reads "[x0,y0,z0,x1,y1,z1]", a half-open box in voxels; refuses a box without voxels.
 VoxelBox read_box(const JsonNode& node);
 std::string text_of(const VoxelBox& box);
-/// Reads an array of different groups, 1 ... 255.
+/// Reads an array of group numbers from 1 to 255; refuses duplicates.
 std::vector<uint8_t> read_groups(const JsonNode& node);
 std::string text_of(std::span<const uint8_t> groups);
 /// Reads "[low, high]".

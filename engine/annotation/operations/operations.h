@@ -1,6 +1,6 @@
 #pragma once
 // The operations on whole groups: the parameters of each, and a table with one row for each. Scripts, actions, palette,
-// log and documentation follow from the table. How to add one: README.md.
+// log and documentation are derived from the table. README.md explains how to add an operation.
 
 #include <array>
 #include <tuple>
@@ -12,8 +12,8 @@
 
 namespace shvr {
 
-/// Set operations on two groups. A voxel has one group, so whatever `group` gains `with` loses, and two groups share
-/// no voxel.
+/// Set operations on two groups. Since a voxel has exactly one group, the two have no voxels in common, and `with`
+/// loses all voxels that `group` gains.
 struct CombineOp {
     enum class How { add, subtract, intersect, copy, move, swap };
     int64_t group = 1;
@@ -29,15 +29,15 @@ constexpr std::span<const Spelling<CombineOp::How>> spellings_of(CombineOp::How)
     return COMBINATIONS;
 }
 
-/// Connected parts of a group: keeps some and erases the others, or gives each part a group of its own, or both.
+/// Connected parts of a group: keeps some parts and erases the others, gives each part its own group, or does both.
 struct IslandsOp {
     enum class Keep { all, largest, at_least, at };
     int64_t group = 1;
     Keep keep = Keep::all;
-    std::optional<int64_t> voxels{};    ///< smallest size to keep, for `at_least`; or `mm3`
+    std::optional<int64_t> voxels{};    ///< with `at_least`: fewest voxels of a part to keep; or `mm3`
     std::optional<double> mm3{};        ///< the same as a volume
-    std::optional<glm::dvec3> at{};     ///< position in the part to keep, in voxels
-    std::optional<int64_t> split_from;  ///< group of the largest part; the next gets the next group
+    std::optional<glm::dvec3> at{};     ///< with `at`: position in the part to keep, in voxels
+    std::optional<int64_t> split_from;  ///< group of the largest part; the next parts get the next groups
     int64_t connectivity = 6;           ///< 6 or 26
     OperationLimits limits{};
 };
@@ -50,15 +50,15 @@ constexpr std::span<const Spelling<IslandsOp::Keep>> spellings_of(IslandsOp::Kee
     return ISLANDS_KEPT;
 }
 
-/// Fills what the group encloses: voxels from which no path over faces outside the group leads to the volume's border.
+/// Fills voxels that the group encloses: no path over faces outside the group connects them to the volume's border.
 struct FillHolesOp {
     int64_t group = 1;
     OperationLimits limits{};
 };
 
-/// Fills between slices that were painted, such as every tenth one: between each two neighbouring slices with voxels of
-/// the group, shapes go over into each other by their signed distances. A slice between holds all voxels that both
-/// shapes have, and none that neither has; so parts that neither share a voxel nor touch are not joined.
+/// Fills between painted slices, such as every tenth one: between two neighbouring slices with voxels of the group, the
+/// shape is interpolated by signed distances. A slice in between gets all voxels that both shapes have, and none that
+/// neither has; so shapes that neither overlap nor touch are not joined.
 struct FillBetweenOp {
     enum class Axis { x, y, z };
     int64_t group = 1;
@@ -72,8 +72,8 @@ constexpr std::span<const Spelling<FillBetweenOp::Axis>> spellings_of(FillBetwee
     return SLICING_AXES;
 }
 
-/// Operations by distance, in the unit of the volume's spacing, between centres of voxels; a distance is exact and
-/// inclusive. Beyond the volume's border is neither the group nor anything else.
+/// Operations by distance, in the unit of the volume's spacing, measured exactly between centres of voxels; a voxel at
+/// just this distance is included. Positions beyond the volume's border belong neither to the group nor to its outside.
 struct GrowOp {  ///< gives the group all voxels within the distance
     int64_t group = 1;
     double distance = 0.0;
@@ -94,8 +94,8 @@ struct CloseOp {  ///< grows, then shrinks by the same distance
     double distance = 0.0;
     OperationLimits limits{};
 };
-/// Leaves a wall: of the group's voxels those that shrinking by `wall` would erase (in), or those instead of the group
-/// that growing would add (out), or both, each with half of the thickness.
+/// Replaces the group by a wall along its surface. `in`: the voxels that shrinking by `wall` would erase; `out`: those
+/// that growing by `wall` would add; `both`: inside and outside, each with half of the thickness.
 struct HollowOp {
     enum class Side { in, out, both };
     int64_t group = 1;
@@ -110,14 +110,14 @@ constexpr std::span<const Spelling<HollowOp::Side>> spellings_of(HollowOp::Side)
     return HOLLOW_SIDES;
 }
 
-/// Smooths the borders of all groups together: a voxel gets the group with the greatest weight within the distance,
-/// where unpainted counts like a group; of equal ones its own, then the one with the lowest number.
+/// Smooths the borders of all groups together: a voxel gets the group with the greatest total weight within the
+/// distance; unpainted counts as a group. In a tie, its own group wins, then the group with the lowest number.
 struct SmoothOp {
     enum class Method {
         median,   ///< all voxels within the distance weigh the same
-        gaussian  ///< standard deviation distance / 2, cut off beyond the distance along each axis
+        gaussian  ///< standard deviation distance / 2, truncated at the distance along each axis
     };
-    std::vector<uint8_t> groups{};  ///< only voxels that leave or join one of them change; empty: all groups
+    std::vector<uint8_t> groups{};  ///< voxels change only if they leave or join one of these; empty: all groups
     double distance = 0.0;          ///< in the unit of the volume's spacing
     Method method = Method::median;
     OperationLimits limits{};
@@ -129,7 +129,7 @@ constexpr std::span<const Spelling<SmoothOp::Method>> spellings_of(SmoothOp::Met
     return SMOOTHINGS;
 }
 
-/// Gives the group all voxels whose intensities lie between two values, both inclusive; NaN lies in no range.
+/// Gives the group all voxels whose intensities lie between two values, both inclusive; NaN is never included.
 struct ThresholdOp {
     int64_t group = 1;
     std::optional<double> from{};  ///< null: no lower bound
@@ -138,30 +138,30 @@ struct ThresholdOp {
     static constexpr bool READS_INTENSITIES = true, PAINTS_ONLY = true;
 };
 
-/// Gives the group all voxels whose centres lie in a ball of a node or in the cone of an internode
+/// Gives the group all voxels whose centres lie in the ball of a node or in the cone of an internode
 /// (trace_shapes.h).
 struct MaskFromTraceOp {
     int64_t group = 1;
-    std::vector<uint8_t> of{};  ///< groups of the nodes and internodes; empty: all of the trace
+    std::vector<uint8_t> of{};  ///< only nodes and internodes of these groups; empty: the whole trace
     OperationLimits limits{};
     static constexpr bool READS_TRACE = true, PAINTS_ONLY = true;
 };
 
-/// Adds the centre lines of a group to the trace, with the distance to its surface as radius; changes no voxel.
+/// Adds the centre lines of a group to the trace; radii are distances to the group's surface. Changes no voxel.
 struct TraceFromMaskOp {
     int64_t group = 1;
-    /// A line with a loose end goes if it reaches at most this many radii of the trace where it leaves.
+    /// Removes a line with a loose end if its length plus end radius is at most this many radii of its branch.
     double spur = 1.5;
-    std::optional<double> tolerance{};  ///< of positions and radii between nodes; null: the longest side of a voxel
+    std::optional<double> tolerance{};  ///< of positions and radii if nodes are left out; null: longest side of a voxel
     static constexpr bool ADDS_TRACE = true;
 };
 
-/// The texts of an operation, and how its parameters are visited: `fields(f, op)`, f as in engine/session/fields.h.
+/// An operation's texts, and a function that visits its parameters: `fields(f, op)`, f as in engine/session/fields.h.
 struct OperationRow {
     const char* id = "";       ///< never changes: files refer to it
     const char* title = "";    ///< "Fill holes"
     const char* meaning = "";  ///< one sentence
-    const char* alias = "";    ///< another name in scripts: actions have that id for something else
+    const char* alias = "";    ///< alternative name in scripts; another action has it as its id
 };
 template <class KindOfRow, class VisitFields>
 struct FullOperationRow : OperationRow {
@@ -291,7 +291,7 @@ inline const OperationRow& row_of(const GroupOperation& operation)
     return OPERATION_ROWS[operation.index()];
 }
 
-/// Visits the keys of an operation: its own, then its limits, if it changes voxels.
+/// Visits the keys of an operation: its own, then those of its limits if it has limits.
 template <class Fields, class Kind>
 void operation_fields(Fields& f, Kind& op)
 {

@@ -1,6 +1,6 @@
 #pragma once
-// Computes what an operation changes. Nothing is changed here: the records become one command of the history. Any
-// thread, on a copy of the mask.
+// Computes an operation's changes as records without changing anything itself; the caller makes the records one command
+// of the history. Any thread may call these on a copy of the mask.
 
 #include "engine/annotation/operations/mask_edit.h"
 #include "engine/annotation/operations/operations.h"
@@ -8,8 +8,8 @@
 
 namespace shvr {
 
-/// Fails, naming the key, the value and what was expected, if the operation is not possible here. An exception from
-/// `progress` ends the operation.
+/// Fails if the operation is not possible here, naming the key, its value and the expected value. An exception from
+/// `progress` cancels the operation.
 OperationResult run(const GroupOperation& operation, const OperationInput& input, const Progress& progress = {});
 
 /// The step's name in the history: "fill holes, group 3".
@@ -17,7 +17,7 @@ std::string label_of(const GroupOperation& operation);
 /// Whether the operation reads intensities.
 bool needs_intensities(const GroupOperation& operation);
 
-// The function of each row; called by `run` only.
+// The function that performs each row's operation; called by `run` only.
 void perform(const CombineOp& op, MaskEdit& edit, const Progress& progress);
 void perform(const IslandsOp& op, MaskEdit& edit, const Progress& progress);
 void perform(const FillHolesOp& op, MaskEdit& edit, const Progress& progress);

@@ -1,9 +1,9 @@
-// Smooths all groups jointly: a voxel gets the group with the greatest weight in the kernel around it, where unpainted
-// is a group like the others. So no group appears that the kernel does not hold, and a voxel becomes unpainted only if
-// an unpainted one is in its kernel. Weights are whole numbers: the result does not depend on the order of sums.
+// Smooths all groups jointly: a voxel gets the group with the greatest weight in the kernel around it; unpainted counts
+// as a group. So a voxel only gets a group that occurs in its kernel, and becomes unpainted only if an unpainted voxel
+// is in its kernel. Weights are integers, so the result does not depend on the order of summation.
 //
-// Median: a ball, slid along x; a step costs the rows of the ball, not its voxels. Gaussian: three passes for each
-// group that the surroundings of a brick hold.
+// Median: a ball slides along x, so a step costs one update per row of the ball, not per voxel. Gaussian: three
+// one-dimensional passes for each group that occurs in a brick's surroundings.
 
 #include <algorithm>
 #include <cmath>
@@ -18,10 +18,10 @@ namespace shvr {
 
 namespace {
 
-/// The kernel may not reach beyond the neighbouring bricks.
+/// The kernel must not extend beyond the bricks next to its own.
 constexpr int64_t MAX_KERNEL = BRICK_SIDE;
 
-/// A brick with what its kernel reaches, up to the volume's border; x fastest.
+/// A brick (`core`), and the voxels that its voxels' kernels reach (`box`), clipped to the volume; x fastest.
 struct Surroundings {
     VoxelBox core{}, box{};
     std::vector<uint8_t> groups{};
@@ -29,7 +29,7 @@ struct Surroundings {
     size_t index(const Size3& at) const { return size_t(index_of(at - box.lower, box.size())); }
 };
 
-/// Voxels of a row at (0, y, z) from the centre: -half to half along x.
+/// A row of the kernel at offset (y, z) from its centre: the voxels from -half to half along x.
 struct KernelRow {
     int64_t y = 0, z = 0, half = 0;
 };
@@ -45,7 +45,7 @@ Size3 kernel_of(const SmoothOp& op, const MaskEdit& edit)
     return voxels;
 }
 
-/// The bricks that the kernel joins to a painted one.
+/// The painted bricks, and the bricks that a kernel around a painted voxel may reach.
 std::set<int64_t> bricks_around(const Mask& mask, const Size3& kernel)
 {
     const Size3 counts = mask.brick_counts(), reach = glm::min(kernel, Size3(1));
@@ -92,12 +92,12 @@ Surroundings surroundings_of(int64_t brick, const Size3& kernel, MaskEdit& edit)
     return around;
 }
 
-/// The best group for each voxel of the core, x fastest, of the groups offered so far. One weight for each voxel is
-/// kept, so memory does not grow with the number of groups.
+/// For each voxel of the core (x fastest), the group with the greatest weight among the groups offered so far. Stores
+/// one weight per voxel, so memory does not grow with the number of groups.
 class Winners {
 public:
     explicit Winners(const Surroundings& around);
-    /// Groups must be offered in ascending order: of equal weights the voxel's own group wins, then the first.
+    /// Offer groups in ascending order: in a tie the voxel's own group wins, otherwise the group offered first.
     void offer(size_t voxel, uint8_t group, uint64_t weight)
     {
         if (weight < weights_[voxel] || (weight == weights_[voxel] && group != own_[voxel])) return;
@@ -141,7 +141,7 @@ std::vector<KernelRow> ball_of(const SmoothOp& op, const Size3& kernel, const Ma
     return rows;
 }
 
-/// Offers the groups for the row of the core that begins at `start`; `first` is the row's first voxel in `winners`.
+/// Offers each group for each voxel of the core's row that begins at `start`, which is voxel `first` of `winners`.
 void offer_row(const Surroundings& around, std::span<const KernelRow> ball, const Size3& start, size_t first,
                Winners& winners)
 {
@@ -173,7 +173,7 @@ Winners median_winners(const Surroundings& around, std::span<const KernelRow> ba
     return winners;
 }
 
-/// Weights for 0, 1, ... voxels along an axis; at most 1024 each, so that 64 bits hold the product of three sums.
+/// Weights at 0, 1, ... voxels along an axis; at most 1024 each, so that the product of three sums fits into 64 bits.
 std::vector<uint64_t> gaussian_along(double spacing, double distance, int64_t voxels)
 {
     std::vector<uint64_t> weights;
@@ -187,7 +187,7 @@ std::vector<uint64_t> gaussian_along(double spacing, double distance, int64_t vo
 /// A weight for each voxel of a box, x fastest.
 using Weights = std::vector<uint64_t>;
 
-/// One pass: `from` fills `box`; the result is cut to the core along the axis, as `box` is then.
+/// One pass along an axis over the weights `from` of the voxels in `box`. Crops result and `box` to the core there.
 Weights blurred(const Weights& from, VoxelBox& box, const VoxelBox& core, int axis, std::span<const uint64_t> along)
 {
     VoxelBox cut = box;
@@ -224,7 +224,7 @@ Winners gaussian_winners(const Surroundings& around, std::span<const std::vector
     return winners;
 }
 
-/// The groups of which one must be in the kernel of a voxel that changes.
+/// The groups to smooth: a voxel changes only if its old or new group is among them.
 GroupSet chosen_by(const SmoothOp& op)
 {
     GroupSet chosen;

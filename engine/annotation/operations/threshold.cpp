@@ -1,4 +1,4 @@
-// Threshold to a group. Reads the volume in pieces of whole blocks of its file, and only where the range may occur.
+// Threshold to a group. Reads the volume in pieces of whole file blocks, and only where intensities may be in range.
 
 #include <limits>
 #include <set>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr int64_t MAX_PIECE_BYTES = int64_t{128} << 20;
 
-/// The size of pieces to be read: whole bricks and, as far as memory allows, whole blocks of the file.
+/// The size of pieces to read, in bricks: enough to cover a block of the file, unless that exceeds MAX_PIECE_BYTES.
 Size3 piece_of(const VolumeSource& source)
 {
     const Size3 bricks = brick_grid(source.info().size);
@@ -58,8 +58,8 @@ bool ThresholdSearch::may_occur(const Size3& brick) const
     return !range || (range->lower <= to_ && range->upper >= from_);
 }
 
-/// Boxes of bricks, as they are read. If the source is sparse and its fill value is not wanted, only those with
-/// stored blocks.
+/// The boxes to read, in bricks. If the source is sparse and its fill value is out of range, only boxes with stored
+/// blocks.
 std::vector<VoxelBox> ThresholdSearch::pieces() const
 {
     const Size3 size = source_.info().size, piece = piece_of(source_);

@@ -1,5 +1,5 @@
-// Mask to trace: cavities are filled, the group is thinned to lines (thinning.h), and the lines become a graph
-// (line_graph.h) without spurs, and with nodes only where they are needed.
+// Mask to trace: fills cavities, thins the group to lines (thinning.h), and makes the lines a graph (line_graph.h)
+// without spurs, with nodes only where they are needed.
 
 #include <algorithm>
 #include <limits>
@@ -17,8 +17,8 @@ namespace shvr {
 
 namespace {
 
-/// An estimate of what a voxel of a line takes: its places in the middle (middles.h), and the edges and triangles to
-/// voxels that it touches.
+/// Estimated memory for each voxel of the thinned lines: distances cached by Middles (middles.h), and the edges and
+/// triangles that join the voxel with others.
 constexpr uint64_t BYTES_OF_VERTEX = 4096;
 
 double tolerance_of(const TraceFromMaskOp& op, const glm::dvec3& spacing)
@@ -31,7 +31,7 @@ struct FilledGroup {
     int64_t cavities = 0;
 };
 
-/// The group with its cavities, found as `fill_holes` does, but without limits and locks, since no voxel changes.
+/// The group with its cavities filled as by `fill_holes`, but without limits and locks, since the mask is not changed.
 FilledGroup filled(MaskEdit& edit, uint8_t group, const Progress& progress)
 {
     FilledGroup result;
@@ -52,14 +52,14 @@ FilledGroup filled(MaskEdit& edit, uint8_t group, const Progress& progress)
     return result;
 }
 
-/// The graph of the group's lines, with the balls in their middle, and how many spurs it lost.
+/// The graph of the group's centre lines, with radii, and the number of spurs removed from it.
 struct Lines {
     LineGraph graph{};
     int64_t spurs = 0;
 };
 
-/// Thinning takes layers as a whole, so a line may run off the middle of a tube; its vertices go there. Neighbours may
-/// go to places that are not next to each other, so spurs are measured before any moves.
+/// Thinning removes whole layers, so a line may run off the middle of a tube; its vertices are moved to the middle.
+/// Moving changes the distances between neighbouring vertices, so spurs are measured before any vertex moves.
 Lines lines_of(const BrickSet& set, const TraceFromMaskOp& op, MaskEdit& edit, const Progress& progress)
 {
     const glm::dvec3 spacing = edit.input().volume.spacing;
@@ -85,7 +85,7 @@ Lines lines_of(const BrickSet& set, const TraceFromMaskOp& op, MaskEdit& edit, c
     return lines;
 }
 
-/// Records that add the vertices that stay, and internodes between them.
+/// Collects records that add nodes for the remaining vertices, and internodes between them.
 class TraceRecords {
 public:
     TraceRecords(const LineGraph& graph, uint8_t group, const TraceGraph* trace) : graph_(graph), group_(group)
@@ -131,7 +131,7 @@ private:
     std::vector<TraceChange> nodes_{}, internodes_{};
 };
 
-/// How many nodes must stay inside a line, so that no two nodes are joined twice and none to itself.
+/// Number of nodes needed inside a line: a trace must not join two nodes twice, or a node to itself.
 size_t inner_nodes(const LineGraph::Line& line, const std::map<std::pair<uint32_t, uint32_t>, int>& lines_between)
 {
     if (line.front() == line.back()) return 2;

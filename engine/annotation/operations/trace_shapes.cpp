@@ -5,9 +5,9 @@
 
 namespace shvr {
 
-// With c = point - a, l = b - a, and radius r(t) = r + t s, the point is inside if f(t) = |c - t l|^2 - r(t)^2 is at
-// most 0 for a t of 0 ... 1. Since f is a parabola, its least value is at the vertex or at an end. Where |l| <= |s|
-// one ball holds the other, and the larger decides.
+// With c = from_a, l = way, s = gain and r(t) = radius + t s, the point is inside if f(t) = |c - t l|^2 - r(t)^2 is at
+// most 0 for some t in [0, 1]. Since f is a parabola, its minimum there is at its vertex or at an end of the interval.
+// If |l| <= |s|, one ball contains the other, so only the larger ball is tested.
 bool TraceShape::contains(const glm::dvec3& point, double margin) const
 {
     const glm::dvec3 from_a = point - a, way = b - a;
