@@ -8,7 +8,7 @@
 
 namespace shvr {
 
-/// One word for each row, y fastest: bit x of word y + 32 z.
+/// One 32-bit word for each row along x: voxel (x, y, z) of the brick is bit x of word y + 32 z.
 using BrickBits = std::array<uint32_t, VOXELS_PER_BRICK / BRICK_SIDE>;
 static_assert(BRICK_SIDE == 32);
 
@@ -24,7 +24,7 @@ inline BrickBits bits_of(const MaskBrick& brick, uint8_t group)
     return bits;
 }
 
-/// The voxels in a brick's part of the volume; `extent` is the size of that part.
+/// The voxels of a brick that lie inside the volume; `extent` is the size of the brick's part inside the volume.
 inline BrickBits bits_inside(const Size3& extent)
 {
     BrickBits bits{};

@@ -11,7 +11,7 @@ namespace {
 constexpr int SIDE = int(BRICK_SIDE);
 constexpr uint32_t NO_LABEL = ~0u;
 
-/// The rows of one brick that touch row (y, z) of another, `offset` bricks away, as ranges of y and z.
+/// The range of y (or z), in a brick `offset` bricks away along that axis, that touches `at` of this brick.
 struct Touching {
     int first, last;
 };
@@ -84,8 +84,8 @@ void BrickComponents::join_bricks(Brick& brick, Brick& other, const Size3& offse
     }
 }
 
-/// `offset`: how many bricks the other row lies further along x. A run of `row` without a label gets that of the first
-/// run that it touches.
+/// Joins runs of two rows that touch. `offset`: position of the other row's brick minus this one's, along x. A run of
+/// `row` without a label gets the label of the first run that it touches.
 void BrickComponents::join_rows(std::span<Run> row, std::span<Run> other, int64_t offset, int reach)
 {
     const int shift = SIDE * int(offset);

@@ -15,18 +15,18 @@ struct Edge {
     double length = 0.0;
 };
 
-/// Voxels that touch: their edges, the short ones first, and the triangles that they form.
+/// The complex of touching voxels: its edges, shortest first, and its triangles.
 class TouchingVoxels {
 public:
     TouchingVoxels(const std::vector<Size3>& voxels, const Mask& mask, const glm::dvec3& spacing);
-    /// The edges of a graph with the same parts and loops.
+    /// The edges of a graph that has as many parts and loops as the complex.
     std::vector<Edge> spanning(const Progress& progress) const;
 
 private:
     using Column = std::vector<uint32_t>;  ///< edges, ascending
     std::vector<Column> triangles() const;
     std::vector<Edge> edges_{};
-    std::vector<std::vector<std::pair<uint32_t, uint32_t>>> later_{};  ///< by vertex: later ones, and the edge there
+    std::vector<std::vector<std::pair<uint32_t, uint32_t>>> later_{};  ///< by vertex: later neighbours and their edges
 };
 
 TouchingVoxels::TouchingVoxels(const std::vector<Size3>& voxels, const Mask& mask, const glm::dvec3& spacing)
@@ -65,7 +65,7 @@ std::vector<TouchingVoxels::Column> TouchingVoxels::triangles() const
     return triangles;
 }
 
-/// Reduces the boundaries of triangles modulo 2: the last edge of a reduced column closes a loop that is filled.
+/// Reduces the triangles' boundaries modulo 2, and omits the last edge of each reduced column: triangles fill its loop.
 std::vector<Edge> TouchingVoxels::spanning(const Progress& progress) const
 {
     std::unordered_map<uint32_t, Column> filled;
@@ -100,7 +100,7 @@ std::vector<Size3> voxels_of(const BrickSet& set, const Mask& mask)
     return voxels;
 }
 
-/// How far a vertex is from the way between two others, or its radius from the one there.
+/// The deviation of a vertex, in position or radius (the larger of the two), from the straight line between two others.
 double off_by(const LineGraph::Vertex& vertex, const LineGraph::Vertex& from, const LineGraph::Vertex& to)
 {
     const glm::dvec3 way = to.position - from.position, away = vertex.position - from.position;
@@ -224,7 +224,7 @@ LineGraph::Line LineGraph::line_to_merge(uint32_t branch, uint32_t next, double 
     }
     const uint32_t other = line.back();
     if (other == branch || !is_branch(other) || (line.size() > 2 && !is_near())) return {};
-    // Without the line, nothing may join the two, and no vertex may be next to both: one of the edges would be lost.
+    // The branches must not have another edge or a common neighbour: merging would make two edges one and lose a loop.
     const std::vector<uint32_t>&a = vertices[branch].joined, &b = vertices[other].joined;
     std::vector<uint32_t> common;
     std::ranges::set_intersection(a, b, std::back_inserter(common));
@@ -286,7 +286,7 @@ LineGraph::Line simplified(const LineGraph& graph, const LineGraph::Line& whole,
 {
     const auto& vertices = graph.vertices;
     const LineGraph::Line between = without_ends(graph, whole), &line = between.size() < inner + 2 ? whole : between;
-    // The vertex between two places that is off most, and by how much.
+    // The largest deviation (`off_by`) of a vertex between two places of the line, and that vertex's place.
     const auto worst = [&](size_t first, size_t last) {
         std::pair<double, size_t> most{-1.0, first};
         for (size_t i = first + 1; i < last; ++i) {

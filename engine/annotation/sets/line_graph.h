@@ -1,10 +1,10 @@
 #pragma once
-// The graph of a thinned set of voxels, homotopic to it: as many parts and loops.
+// The graph of a thinned set of voxels, homotopic to the set: it has as many parts and loops.
 //
-// The voxels as closed cubes have the topology of the complex of all sets of voxels that touch each other in pairs
-// (the nerve; boxes that meet in pairs have a common point). An edge between touching voxels stays if it spans a part
-// or closes a loop that no triangles fill (persistent homology, Edelsbrunner, Letscher and Zomorodian 2002); short
-// edges come first. One thread.
+// The union of the voxels as closed cubes is homotopic to their nerve, the complex of all sets of pairwise touching
+// voxels, since boxes that meet in pairs have a common point. An edge between touching voxels is kept if it connects
+// two parts or closes a loop that no triangles fill; shorter edges are considered first (persistent homology,
+// Edelsbrunner, Letscher and Zomorodian 2002). One thread.
 
 #include <vector>
 
@@ -19,19 +19,19 @@ struct LineGraph {
         std::vector<uint32_t> joined{};  ///< the vertices next to it, ascending
         bool is_gone = false;
     };
-    /// A way between two vertices that are no passages, or back to the first vertex; each vertex once otherwise.
+    /// A path from one vertex to another, or back to the first; each vertex in between has exactly two neighbours.
     using Line = std::vector<uint32_t>;
 
     std::vector<Vertex> vertices{};
 
-    /// Ways that together have every edge once, in the order of their first vertices.
+    /// Lines that contain each edge once: first those at ends or branches, then separate loops, each by first vertex.
     std::vector<Line> lines() const;
     double length_of(const Line& line) const;
-    /// Removes lines from a branch to a loose end, while there are any, whose length and radius at the end together are
-    /// at most `spur` radii of the branch; the shortest go first. Returns how many.
+    /// Removes spurs, shortest first, until none is left: lines from a branch to a loose end whose length plus radius
+    /// at the end is at most `spur` times the branch's radius. Returns the number of lines removed.
     int64_t prune(double spur);
-    /// Merges branches that are next to each other, or joined by a line that stays within `tolerance` of one, where
-    /// that keeps all loops. The one with the larger radius gives the position.
+    /// Merges branches that are adjacent, or joined by a line that stays within `tolerance` of the first, unless that
+    /// would remove a loop. A merged branch has the position and radius of the branch with the larger radius.
     void merge_branches(double tolerance);
     int64_t count_edges() const;
 
@@ -40,17 +40,17 @@ private:
     Line line_from(uint32_t start, uint32_t next) const;
     bool is_branch(uint32_t vertex) const { return vertices[vertex].joined.size() > 2; }
     void join(uint32_t a, uint32_t b);
-    /// The way from a branch to another, if it stays within `tolerance`; otherwise empty.
+    /// The line from a branch over `next` to another branch if they can be merged; otherwise empty.
     Line line_to_merge(uint32_t branch, uint32_t next, double tolerance) const;
     void merge(const Line& line);
 };
 
-/// Vertices at the centres of the voxels, ascending, without radii.
+/// The graph of thinned voxels: one vertex at the centre of each voxel, by ascending voxel index, without radii.
 LineGraph graph_of(const BrickSet& lines, const Mask& mask, const glm::dvec3& spacing, const Progress& progress);
 
-/// The vertices of a line that stay, first and last among them, so that between two of them positions and radii are
-/// within `tolerance` (Douglas and Peucker 1973); at least `inner` of those between. Inside the ball of a branch at an
-/// end the line leads straight to its middle: the parts of a thick junction that belong to one line are not its course.
+/// Simplifies a line (Douglas and Peucker 1973): keeps its first and last vertex, and at least `inner` others, so that
+/// positions and radii deviate by at most `tolerance`. Drops the vertices inside the ball of a branch at an end, if
+/// enough others are left: inside a thick junction, thinned voxels do not show a line's course.
 LineGraph::Line simplified(const LineGraph& graph, const LineGraph::Line& line, double tolerance, size_t inner);
 
 }  // namespace shvr

@@ -8,7 +8,7 @@ namespace shvr {
 
 namespace {
 
-/// Calls `visit(at)` for voxels along an axis, down and up from a place, while it returns true.
+/// Calls `visit(at)` for the voxels below a place along an axis, then for those above, each while it returns true.
 template <class Visit>
 void go_both_ways(int64_t place, int64_t size, const Visit& visit)
 {
@@ -98,7 +98,7 @@ double Middles::distance_of(const Place& place, double least)
     return known.distance;
 }
 
-/// The middle between the distance to the nearest centre outside, and the largest distance of a centre below that.
+/// The mean of `distance` (to the nearest centre outside) and the greatest distance of a centre nearer than that.
 double Middles::radius_at(const Place& place, double distance) const
 {
     if (distance == std::numeric_limits<double>::infinity()) return glm::length(glm::dvec3(size_) * spacing_);

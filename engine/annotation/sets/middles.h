@@ -1,6 +1,6 @@
 #pragma once
-// Balls in the middle of a set of voxels, at places on a grid of half voxels: the centres of voxels, of their faces and
-// edges, and their corners. One thread; remembers the distance of every place that it looks at, about 56 bytes each.
+// Balls in the middle of a set of voxels. Their centres lie on a grid of half voxels: centres of voxels, of faces and
+// of edges, and corners. One thread. Caches the distance at every place that it evaluates, about 56 bytes each.
 
 #include <unordered_map>
 
@@ -8,8 +8,8 @@
 
 namespace shvr {
 
-/// A ball in volume space. Its radius is the middle of all radii with which it holds the same centres of voxels, as
-/// many as it can with none outside of the set.
+/// A ball in volume space. It contains as many voxel centres as possible without one outside the set; its radius is the
+/// middle of the range of radii that contain just these centres.
 struct MiddleBall {
     glm::dvec3 position{0.0};
     double radius = 0.0;
@@ -17,24 +17,24 @@ struct MiddleBall {
 
 class Middles {
 public:
-    /// `reach`: the grid; its distance is not used. What lies beyond the volume's border is not outside of the set.
+    /// `reach` gives the grid; its distance is not used. Positions beyond the volume do not count as outside the set.
     Middles(const BrickSet& set, const Reach& reach);
-    /// Goes from a voxel of the set up to two voxels, by half voxels, while the distance to the outside grows.
+    /// Climbs from a voxel of the set, by up to four steps of half a voxel, while the distance to the outside grows.
     MiddleBall near(const Size3& voxel);
 
 private:
-    /// In half voxels: the centre of voxel v is at 2 v + 1.
+    /// A position in half voxels: the centre of voxel v is at 2 v + 1.
     using Place = Size3;
     struct Known {
         double distance = 0.0;
-        bool is_exact = false;  ///< otherwise the distance is at most this
+        bool is_exact = false;  ///< false: `distance` is only an upper bound
     };
     double squared(int axis, const Place& from, int64_t at) const;
-    /// The distance to the nearest centre of a voxel outside, if it is over `least`; otherwise a number up to `least`.
+    /// The distance to the nearest voxel centre outside if it exceeds `least`; otherwise an upper bound up to `least`.
     double distance_of(const Place& place, double least);
     double measured(const Place& place, double least);
     double radius_at(const Place& place, double distance) const;
-    /// The nearest voxel outside, from `first` on, in the row of y and z; -1: none before the volume's border.
+    /// The x of the nearest voxel outside the set in the row of `first`, from `first` down (or up); -1: none.
     int64_t outside_below(Size3 first);
     int64_t outside_above(Size3 first);
     uint32_t row_of(const Size3& voxel);
@@ -47,7 +47,7 @@ private:
         int64_t brick = -1;
         const BrickBits* bits = nullptr;
     };
-    std::array<Slot, 64> slots_{};  ///< the bricks looked at last, by their positions modulo 4
+    std::array<Slot, 64> slots_{};  ///< cache of the bricks used last, by their positions modulo 4
 };
 
 }  // namespace shvr

@@ -9,11 +9,11 @@ namespace shvr {
 
 inline constexpr double INFINITE = std::numeric_limits<double>::infinity();
 
-/// Replaces f(i), values at points `spacing` apart, by min over j of f(j) + (spacing (i - j))^2, for i in [first, end).
+/// Computes min over j of f(j) + (spacing (i - j))^2 for i in [first, end); samples of f are `spacing` apart.
 class Parabolas {
 public:
     explicit Parabolas(double spacing) : square_(spacing * spacing) {}
-    /// `at(j)`: the value of f; values above `most` count as infinite. Returns false if all are.
+    /// `at(j)` returns f(j); values above `most` count as infinite. Returns false if all values are infinite.
     template <class At>
     bool build(int64_t count, double most, const At& at)
     {
@@ -24,7 +24,7 @@ public:
             double from = -INFINITE;
             while (!hulls_.empty()) {
                 const Hull& last = hulls_.back();
-                // Where the parabolas of `last` and j meet
+                // The position where the parabolas of `last` and j intersect.
                 from = 0.5 * (double(j + last.at) + (value - last.value) / (square_ * double(j - last.at)));
                 if (from > last.from) break;
                 hulls_.pop_back();

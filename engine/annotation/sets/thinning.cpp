@@ -17,7 +17,7 @@ constexpr int steps_between(int a, int b, bool is_sum)
     const int x = size(a % 3 - b % 3), y = size(a / 3 % 3 - b / 3 % 3), z = size(a / 9 - b / 9);
     return is_sum ? x + y + z : std::max({x, y, z});
 }
-/// For each of 27 places, the others at most one step away: along axes only (6), or also diagonally (26).
+/// For each of the 27 places, a mask of its neighbours: over faces only (6), or also over edges and corners (26).
 constexpr Masks neighbours(bool over_faces)
 {
     Masks masks{};
@@ -36,7 +36,7 @@ constexpr uint32_t corners()
 }
 constexpr uint32_t ALL = (1u << 27) - 1, AROUND = ALL & ~(1u << MIDDLE), FACES_AND_EDGES = AROUND & ~corners();
 
-/// The part of `set` that is connected with one of its places.
+/// The connected part of `set` that contains the place `start`.
 uint32_t part_of_set(uint32_t set, uint32_t start, const Masks& neighbours)
 {
     uint32_t part = start;
@@ -108,8 +108,8 @@ uint32_t Remaining::around(const Size3& voxel)
 class Thinning {
 public:
     Thinning(const BrickSet& set, const Reach& reach) : size_(reach.mask.size()), remaining_(set, reach.mask) {}
-    /// Removes what can be removed of `voxels` and, where others were removed next to them, of `may_go`. Meanwhile
-    /// the completed fraction is `done`.
+    /// Removes all removable voxels among `voxels`, then repeatedly among the neighbours of removed voxels that are in
+    /// `may_go`. Meanwhile, reports `done` as the completed fraction.
     void remove(std::vector<int64_t> voxels, Remaining& may_go, const Progress& progress, double done);
     BrickSet take() { return remaining_.take(); }
 

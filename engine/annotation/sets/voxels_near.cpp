@@ -26,7 +26,7 @@ public:
           along_y_(spacing_.y),
           along_z_(spacing_.z)
     {}
-    /// Writes the result of a tile's bricks into `found`.
+    /// Adds the voxels near the set, in these bricks of a tile, to `found`.
     void search(const Size3& tile, std::span<const int64_t> bricks, BrickSet& found);
 
 private:
@@ -45,13 +45,13 @@ private:
     Size3 reach_;
     Parabolas along_y_, along_z_;
 
-    VoxelBox tile_, window_;  ///< the tile, and what reaches into it, clipped to the volume
+    VoxelBox tile_, window_;  ///< the tile, and the tile enlarged by the reach, both clipped to the volume
     VoxelBox grid_;           ///< bricks that the window meets
     std::vector<const BrickBits*> bricks_;
-    std::vector<int64_t> places_;      ///< columns of the set's voxels in a row of the window
-    std::vector<uint16_t> near_x_;     ///< tile x, window y: voxels to the nearest one of the set along x, in one slice
+    std::vector<int64_t> places_;      ///< x of the set's voxels in one row of the window
+    std::vector<uint16_t> near_x_;     ///< tile x, window y: distance along x to the set, in voxels, in one slice
     std::vector<double> near_xy_;      ///< tile x, tile y, window z: squared distance within a slice
-    std::vector<uint8_t> is_reached_;  ///< by slice of the window: whether near_xy_ has a finite value
+    std::vector<uint8_t> is_reached_;  ///< by slice of the window: whether near_xy_ has finite values there
 };
 
 void TileSearch::gather(const Size3& tile)
@@ -69,7 +69,7 @@ void TileSearch::gather(const Size3& tile)
             }
 }
 
-/// The voxels to be near to in a row of a brick.
+/// The voxels of a brick's row that distances are measured to: the set's or, if inverted, its complement's.
 uint32_t TileSearch::word(const Size3& brick, int64_t row) const
 {
     const BrickBits* const bits = bricks_[size_t(index_of(brick - grid_.lower, grid_.size()))];
@@ -99,7 +99,7 @@ void TileSearch::search_row(int64_t y, int64_t z)
     }
 }
 
-/// From distances along x to distances within a slice.
+/// Computes squared distances within the slice z from the distances along x.
 void TileSearch::search_columns(int64_t z)
 {
     const Size3 size = tile_.size(), window = window_.size();
@@ -122,7 +122,7 @@ void TileSearch::search_columns(int64_t z)
     is_reached_[size_t(z - window_.lower.z)] = is_reached;
 }
 
-/// Calls `take` for each voxel of the tile that is near, as its place in the tile.
+/// Calls `take` for each voxel of the tile that is near the set, with its position in the tile.
 template <class Take>
 void TileSearch::search_depths(const Take& take)
 {
@@ -180,7 +180,7 @@ std::vector<int64_t> bricks_near(const BrickSet& set, const Reach& reach)
     std::set<int64_t> bricks;
     for (const auto& [brick, bits] : set) {
         const VoxelBox box = reach.mask.box_of(brick);
-        // The rows and slices that have voxels; columns are not worth looking at.
+        // The range of rows and slices with voxels; a tighter range along x would not be worth its cost.
         Size3 first = box.size(), last(0);
         for (int64_t row = 0; row < int64_t(bits.size()); ++row)
             if (bits[size_t(row)] != 0) {
