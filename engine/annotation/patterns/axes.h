@@ -43,7 +43,7 @@ inline Eigen eigen_of(glm::dmat3 matrix)
     return eigen;
 }
 
-/// Mean and covariance of straight pieces, each with its weight spread evenly along it.
+/// Mean and covariance of straight pieces; the weight of each piece is spread evenly along it.
 class Moments {
 public:
     void add(const glm::dvec3& a, const glm::dvec3& b, double weight)

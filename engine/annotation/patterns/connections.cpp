@@ -20,8 +20,8 @@ constexpr PairOfParts PAIRS[] = {{HeadPart::abaxial, HeadPart::adaxial},
                                  {HeadPart::adaxial, HeadPart::floret}};
 constexpr double BINS[] = {0.0, 0.2, 0.4, 0.6, 0.8, 1.0};
 
-/// rho of the connections between two parts: internodes that join nodes of both, and nodes at which veins of both meet
-/// but no such internode.
+/// The rho (distance from the axis in head radii) of each connection between two parts: an internode that joins nodes
+/// of both, or a node without such an internode at which veins of both meet.
 std::vector<double> connections_of(const Head& head, HeadPart one, HeadPart other)
 {
     std::vector<double> found;
@@ -46,8 +46,8 @@ std::vector<double> connections_of(const Head& head, HeadPart one, HeadPart othe
     return found;
 }
 
-/// rho of the connections between florets' veins. Each place on them belongs to the floret to which the way along them
-/// is shortest; an internode between two florets' places is a connection.
+/// The rho of each connection between florets' veins. A node of these veins belongs to the floret that is nearest along
+/// the veins; an internode whose nodes belong to different florets is a connection.
 std::vector<double> floret_connections_of(const Head& head)
 {
     const VeinGraph& graph = head.graph;
@@ -98,8 +98,8 @@ void add_rows(const std::string& pair, const std::vector<double>& rhos, PatternR
     }
 }
 
-constexpr double RIM = 0.75;         ///< rho of the outer rim's inner border
-constexpr double FREE_CENTRE = 0.2;  ///< veins whose inner end is further out leave the centre to florets
+constexpr double RIM = 0.75;         ///< rho at the inner border of the outer rim
+constexpr double FREE_CENTRE = 0.2;  ///< if the inner ends of veins have a greater rho, the centre is free of veins
 
 }  // namespace
 

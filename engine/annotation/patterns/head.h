@@ -1,5 +1,5 @@
 #pragma once
-// A flower head: its veins, its axis, its florets and its receptacle's surface, as measures of patterns need them.
+// A flower head: the veins, axis, florets and receptacle's surface that the pattern measures are computed from.
 
 #include "engine/annotation/patterns/head_frame.h"
 #include "engine/annotation/patterns/pattern_table.h"
@@ -12,17 +12,17 @@ inline constexpr double DEGREES = 57.29577951308232;  ///< per radian
 struct Receptacle {
     double constant = 0.0, square = 0.0, fourth = 0.0;  ///< of rho
     double rho_least = 0.0, rho_most = 0.0;             ///< where florets are
-    /// Slope of the height outwards, both in radii of the head.
+    /// Slope of the surface outwards: change of height per change of rho, both in radii of the head.
     double slope(double rho) const { return rho * (2.0 * square + 4.0 * fourth * rho * rho); }
 };
 
 struct Head {
     VeinGraph graph;
     HeadFrame frame;
-    /// Distance from the axis of the outermost floret; without florets, of the outermost node of a section.
+    /// Distance of the outermost floret from the axis or, without florets, of the outermost node of any section.
     double radius = 0.0;
     std::vector<glm::dvec3> places{};  ///< position of each node in the frame, in radii of the head
-    std::vector<uint32_t> florets{};   ///< nodes: upper ends of florets' veins, and florets without veins
+    std::vector<uint32_t> florets{};   ///< indices of nodes: upper ends of florets' veins, and florets without veins
     std::optional<Receptacle> receptacle{};
 
     double rho(size_t node) const { return std::hypot(places[node].x, places[node].y); }
@@ -35,20 +35,20 @@ struct FoundHead {
 };
 FoundHead find_head(VeinGraph graph);
 
-/// The other end of the chain that begins at a node with one internode: an end or a branch.
+/// Follows the chain of internodes that begins at a node with one internode, and returns its other end or branch.
 uint32_t other_end(const VeinGraph& graph, uint32_t end);
 
-/// Quantile by linear interpolation between the sorted values (type 7 of Hyndman and Fan 1996). At least one value.
+/// Quantile by linear interpolation between the sorted values (type 7 of Hyndman and Fan 1996); needs a value.
 double quantile(std::vector<double> values, double share);
 
-// The measures, in parts; each adds its rows.
+// Each of these functions computes some of the measures and adds their rows.
 void measure_connections(const Head& head, PatternRows& rows);
 void measure_veins(const Head& head, PatternRows& rows);
 void measure_phyllotaxis(const Head& head, PatternRows& rows);
 void measure_supply(const Head& head, PatternRows& rows);
 void measure_stages(const Head& head, PatternRows& rows);
 
-/// All of them. A trace that has no axis gets one row with the reason.
+/// Computes all measures. If the trace has no axis, returns one row, which states the reason.
 PatternRows measure_patterns(const TraceGraph& trace, const HeadSections& sections, const TraceSpace& space);
 
 }  // namespace shvr

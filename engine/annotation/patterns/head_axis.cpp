@@ -6,11 +6,11 @@ namespace shvr {
 
 namespace {
 
-constexpr double AXIS_PLAY = 0.05;  ///< points that miss their vein's plane by more count little
-/// Weight of the axis of symmetry against a vein's points as far apart along the axis as their errors are large.
+constexpr double AXIS_PLAY = 0.05;  ///< points further than this from their vein's plane have little weight
+/// Weight of the sections' axis of symmetry, relative to the squared errors of the veins' points.
 constexpr double SYMMETRY_WEIGHT = 4.0;
 
-/// Points relative to the axis: p = (x, y, along), and the normal of the plane through the axis that fits them best.
+/// A vein's points relative to the axis, as (x, y, along), and the normal of the best-fitting plane through the axis.
 struct AxialCourse {
     std::vector<glm::dvec3> points;
     glm::dvec2 normal{1.0, 0.0};
@@ -48,8 +48,8 @@ double cost_of(const std::vector<VeinCourse>& courses, const HeadAxis& axis)
     return cost / length;
 }
 
-/// The direction around which the sections' moments are most alike, and how much they say so: 1 for a disc, 0 for a
-/// ball or a half.
+/// The principal axis around which the sections' moments are most equal, and the strength of this symmetry: 1 for a
+/// disc, 0 for a ball, small for half a disc.
 struct Symmetry {
     glm::dvec3 direction{0.0, 0.0, 1.0};
     double strength = 0.0;
@@ -70,13 +70,13 @@ Symmetry symmetry_of(const Eigen& principal)
     return found;
 }
 
-/// One equation: the square sum of residuals in direction (2) and place (2), and the right side.
+/// Normal equations of a Gauss-Newton step; the unknowns are changes of the axis's direction (2) and position (2).
 struct AxisEquations {
     glm::dmat4 normal{0.0};
     glm::dvec4 right{0.0};
     double length = 0.0, squares = 0.0;
 
-    /// Adds a vein; the turn of its plane around the axis is eliminated.
+    /// Adds a vein, after eliminating the unknown rotation of its plane around the axis.
     void add(const VeinCourse& course, const AxialCourse& made)
     {
         const glm::dvec2 n = made.normal, in_plane(-n.y, n.x);
@@ -101,7 +101,7 @@ struct AxisEquations {
     }
 };
 
-/// Gauss and Newton's steps. Slight damping keeps what the veins do not decide.
+/// Refines the axis by Gauss-Newton steps. Slight damping preserves components that the veins do not determine.
 HeadAxis refined(const std::vector<VeinCourse>& courses, const Symmetry& symmetry, HeadAxis axis)
 {
     for (int step = 0; step < 40; ++step) {
@@ -126,7 +126,7 @@ HeadAxis refined(const std::vector<VeinCourse>& courses, const Symmetry& symmetr
     return axis;
 }
 
-/// Length of the mean of exp(2 i azimuth): 1 if all veins lie in one plane through the axis, near 0 if around it.
+/// Length of the mean of exp(2 i azimuth): 1 if all veins lie in one plane through the axis, near 0 if all around it.
 double one_sidedness(const std::vector<VeinCourse>& courses, const HeadAxis& axis)
 {
     const auto [x, y] = across(axis.direction);
@@ -143,7 +143,7 @@ double one_sidedness(const std::vector<VeinCourse>& courses, const HeadAxis& axi
     return all > 0.0 ? glm::length(sum) / all : 1.0;
 }
 
-/// The same of the sections, by the square of the distance from the axis.
+/// Like `one_sidedness`, but of the sections, weighted by the square of the distance from the axis.
 double flatness_around(const Moments& moments, const HeadAxis& axis)
 {
     const auto [x, y] = across(axis.direction);
@@ -153,8 +153,8 @@ double flatness_around(const Moments& moments, const HeadAxis& axis)
     return xx + yy > 0.0 ? std::hypot(xx - yy, 2.0 * xy) / (xx + yy) : 1.0;
 }
 
-/// Starts: the principal axes, and the lines that best meet all pieces by linear least squares (lines as pairs of
-/// direction w and moment v = c x w meet if t . v + (p x t) . w = 0).
+/// Starting values: the principal axes, and the lines that best meet all pieces by linear least squares. A line of
+/// direction w and moment v = c x w meets the line of direction t through p if t . v + (p x t) . w = 0.
 std::vector<HeadAxis> starts_of(const std::vector<VeinCourse>& courses, const Moments& moments, const Eigen& principal)
 {
     std::vector<HeadAxis> starts;
@@ -208,7 +208,7 @@ std::vector<VeinCourse> abaxial_courses(const VeinGraph& graph, const std::vecto
         }
         courses.push_back(std::move(course));
     };
-    // From ends and branches, then what is left: rings.
+    // First the veins that begin at ends and branches; all internodes that are left then belong to rings.
     for (const bool from_ends : {true, false})
         for (uint32_t link = 0; link < graph.links().size(); ++link)
             for (const uint32_t node : {graph.links()[link].a, graph.links()[link].b})

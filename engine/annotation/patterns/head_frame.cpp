@@ -31,12 +31,12 @@ Scale scale_of(const VeinGraph& graph)
         squares += glm::dot(d, d) / count;
         largest = std::max({largest, std::abs(node.at.x), std::abs(node.at.y), std::abs(node.at.z)});
     }
-    // Nodes at one place differ only by rounding.
+    // Smaller squares come from rounding alone: all nodes are at one place.
     scale.size = squares > 1e-24 * largest * largest ? std::sqrt(squares) : 0.0;
     return scale;
 }
 
-/// Of chords of a third of the sections' radius, or of a whole vein: short pieces point wherever a hand strays.
+/// Measured on chords of 0.3 radii of the sections (or whole veins): the directions of short pieces are mostly noise.
 double residual_of(const std::vector<VeinCourse>& courses, const HeadAxis& axis)
 {
     double sum = 0.0, length = 0.0;
@@ -139,7 +139,7 @@ FoundFrame fit_frame(const VeinGraph& graph)
     }
     frame.up = axis->direction;
     std::tie(frame.x, frame.y) = across(frame.up);
-    // The point of the axis that is nearest to the sections' middle.
+    // The point of the axis that is nearest to the mean of the sections' nodes.
     const glm::dvec3 foot = axis->centre - frame.up * glm::dot(axis->centre, frame.up);
     frame.centre = scale.mean + scale.size * foot;
     orient(graph, frame);

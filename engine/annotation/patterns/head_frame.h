@@ -12,9 +12,9 @@ struct HeadFrame {
     glm::dvec3 centre{0.0};  ///< on the axis; physical space
     /// Right-handed axes of unit length; `up` points from the stem to the florets.
     glm::dvec3 x{1.0, 0.0, 0.0}, y{0.0, 1.0, 0.0}, up{0.0, 0.0, 1.0};
-    bool knows_up = true;  ///< false: nothing tells above from below, so up.z >= 0
-    /// Root mean square angle between chords of abaxial veins and planes through the axis, by length; null if they were
-    /// not used.
+    bool knows_up = true;  ///< false: the trace does not show which end is up, so up.z >= 0
+    /// Root mean square angle (weighted by length) between chords of abaxial veins and planes through the axis; null if
+    /// the axis was fitted without veins.
     std::optional<double> residual_degrees{};
 
     /// Distances along x, y and up from the centre.
@@ -29,9 +29,9 @@ struct FoundFrame {
     std::optional<HeadFrame> frame{};
     std::string reason{};  ///< why there is none
 };
-/// Fits the axis. Abaxial veins run in planes through it (head_axis.h). Without abaxial veins around the axis, it is
-/// the principal axis of inertia of the florets (12 or more) or else of all sections whose moment differs from the
-/// other two. Time is linear in the number of nodes.
+/// Fits the axis so that abaxial veins run in planes through it (head_axis.h). If no abaxial veins lie around an axis,
+/// uses the principal axis of inertia whose moment differs most from the other two: of the florets if there are 12 or
+/// more, otherwise of all sections. Time is linear in the number of nodes.
 FoundFrame fit_frame(const VeinGraph& graph);
 
 }  // namespace shvr

@@ -15,14 +15,14 @@ namespace {
 
 constexpr size_t MIN_FLORETS = 20;
 constexpr double MIN_AGREEMENT = 0.5;  ///< minimum; florets at random reach 0.05
-constexpr double PLAY = 0.2;           ///< greatest error of a pair in line, per length of the pair
+constexpr double PLAY = 0.2;           ///< largest error of a pair in line, relative to the pair's length
 
 double azimuth(const glm::dvec3& place)
 {
     return std::atan2(place.y, place.x);
 }
 
-/// Returns for each floret the nearest ones further out on both sides.
+/// Returns each floret's nearest neighbours further out: one on each side, where there is one.
 std::vector<FloretPair> pairs_of(const std::vector<glm::dvec3>& places)
 {
     const size_t count = places.size();
@@ -53,7 +53,7 @@ std::vector<FloretPair> pairs_of(const std::vector<glm::dvec3>& places)
     return pairs;
 }
 
-/// Mean azimuth and order of the pairs to one side whose order is near the median: others are of another family.
+/// Mean azimuth and order of pairs to one side. Ignores orders far from the median, which are of another family.
 std::optional<glm::dvec2> mean_vector(const std::vector<const FloretPair*>& pairs)
 {
     if (pairs.size() < 5) return {};
@@ -73,11 +73,11 @@ std::optional<glm::dvec2> mean_vector(const std::vector<const FloretPair*>& pair
 
 struct Estimate {
     int jugacy;
-    double divergence, kept;  ///< kept: florets that are there, of those in the lattice
+    double divergence, kept;  ///< kept: share of the lattice's florets that are present
 };
 
-/// The divergence of a lattice with m parastichies along `a` (to the left) and n along `b`: with m' = m / g and
-/// n' = n / g, whole r and s exist such that s m' - r n' = 1, and m' d = a + r (2 pi / g), n' d = b + s (2 pi / g).
+/// The divergence d of a lattice with m parastichies along `a` (to the left) and n along `b`: with m' = m / g, n' = n /
+/// g and integers r and s such that s m' - r n' = 1, m' d = a + r (2 pi / g) and n' d = b + s (2 pi / g).
 Estimate estimate_of(int m, int n, const glm::dvec2& a, const glm::dvec2& b)
 {
     const int g = std::gcd(m, n), left = m / g, right = n / g;
@@ -90,7 +90,7 @@ Estimate estimate_of(int m, int n, const glm::dvec2& a, const glm::dvec2& b)
     return {g, d - part * std::floor(d / part), 0.5 * (a.y / m + b.y / n)};
 }
 
-/// Estimates from rings around the axis; on a narrow ring the vectors to neighbours are all alike.
+/// Makes estimates from rings around the axis: in a narrow ring, the vectors to neighbours are nearly equal.
 std::vector<Estimate> estimates_of(const std::vector<FloretPair>& pairs)
 {
     constexpr glm::dvec2 WINDOWS[] = {{0.2, 0.45}, {0.1, 0.3}, {0.35, 0.65}, {0.03, 0.2}, {0.5, 0.8}, {0.65, 1.0}};
@@ -112,19 +112,19 @@ std::vector<Estimate> estimates_of(const std::vector<FloretPair>& pairs)
         const double area = a->x * b->y - b->x * a->y;
         const double m = TURN * a->y / area, n = TURN * b->y / area;
         if (!(m > 0.5 && n > 0.5 && m < 1e4 && n < 1e4)) continue;
-        // Disturbed florets have other neighbours, which turns the mean vectors: numbers may be off by more than one.
+        // Disturbed florets have other neighbours, which turns the mean vectors: m and n may be off by more than one.
         for (double m_of = std::floor(m) - 1.0; m_of <= std::floor(m) + 2.0; ++m_of)
             for (double n_of = std::floor(n) - 1.0; n_of <= std::floor(n) + 2.0; ++n_of) {
                 if (m_of < 1.0 || n_of < 1.0) continue;
                 const Estimate estimate = estimate_of(int(m_of), int(n_of), *a, *b);
-                // More florets than the lattice has, or less than a third of them, are another lattice's.
+                // Outside these limits, the numbers of florets and lattice points do not match: it is another lattice.
                 if (estimate.jugacy <= 12 && estimate.kept > 0.33 && estimate.kept < 1.5) estimates.push_back(estimate);
             }
     }
     return estimates;
 }
 
-/// Finds each pair's step, and whether the pair is in line.
+/// Sets each pair's most likely step, whether the pair is in line, and the probability that it is by chance.
 void assign_steps(const Estimate& estimate, std::vector<FloretPair>& pairs)
 {
     const double part = TURN / estimate.jugacy;
@@ -144,7 +144,7 @@ void assign_steps(const Estimate& estimate, std::vector<FloretPair>& pairs)
     }
 }
 
-/// Least squares of the divergence over the pairs in line; their errors are near their lengths.
+/// Fits the divergence to the pairs in line by least squares, with errors proportional to the pairs' lengths.
 void refine(Estimate& estimate, std::vector<FloretPair>& pairs)
 {
     const double part = TURN / estimate.jugacy;
@@ -164,8 +164,8 @@ void refine(Estimate& estimate, std::vector<FloretPair>& pairs)
     assign_steps(estimate, pairs);
 }
 
-/// Agreement beyond chance (as in Cohen's kappa), times the share of florets with a number: half the divergence of
-/// whorls of two fits all pairs, too, but numbers half of the florets.
+/// Agreement beyond chance (as in Cohen's kappa), times the share of florets that have a number. For whorls of two,
+/// half the divergence also fits all pairs, but it numbers only half of the florets.
 double agreement_of(const FloretLattice& lattice)
 {
     double chance = 0.0, agreeing = 0.0;

@@ -11,7 +11,7 @@ namespace shvr {
 
 namespace {
 
-/// Union and find, with the number of whorls from each floret to its root.
+/// Union-find over florets, with the number of whorls from each floret to its root.
 class Numbers {
 public:
     explicit Numbers(size_t count) : root_(count), from_root_(count) { std::iota(root_.begin(), root_.end(), 0U); }
@@ -21,7 +21,7 @@ public:
         for (; root_[floret] != floret; floret = root_[floret]) whorls += from_root_[floret];
         return {floret, whorls};
     }
-    /// Returns whether the step agrees with what is known; if nothing is, it is then.
+    /// Returns whether the step agrees with the known numbers; florets without a known difference are joined by it.
     bool join(uint32_t inner, uint32_t outer, int step)
     {
         const auto [a, from_a] = find(inner);
@@ -42,7 +42,7 @@ private:
     std::vector<size_t> size_ = std::vector<size_t>(root_.size(), 1);
 };
 
-/// One equation: unknowns are phase, correction of the divergence, and the centre.
+/// One equation; the unknowns are the phase, the correction of the divergence, and the centre (2).
 struct Equation {
     glm::dvec4 terms;
     double right;
@@ -71,7 +71,7 @@ std::vector<Equation> equations_of(const std::vector<glm::dvec3>& places, const 
         const glm::dvec2 p = glm::dvec2(places[i]) - lattice.centre;
         const double rho = glm::length(p);
         if (!(rho > 1e-6)) continue;
-        // The whorls' middle as origin keeps phase and divergence apart.
+        // Counting whorls from their mean makes phase and divergence nearly independent.
         equations.push_back({{rho, rho * (*lattice.whorls[i] - middle / count), -p.y / rho, p.x / rho},
                              rho * std::remainder(off(i) - mean, part),
                              double(*lattice.whorls[i])});
@@ -79,7 +79,7 @@ std::vector<Equation> equations_of(const std::vector<glm::dvec3>& places, const 
     return equations;
 }
 
-/// Collects the normal equations and solves them. `damping` holds the centre where florets do not determine it.
+/// Sums up the normal equations and solves them. Damping keeps the centre if the florets do not determine it.
 class Normal {
 public:
     void add(const Equation& equation)
@@ -106,7 +106,7 @@ private:
 
 void bootstrap(const std::vector<Equation>& equations, FloretLattice& lattice)
 {
-    // The whole costs at most 2e7 equations beyond 20000 florets.
+    // Limits the cost to 2e7 equations; only above 200000 florets it is higher.
     const size_t rounds = std::clamp<size_t>(20000000 / equations.size(), 100, 1000);
     std::vector<double> found;
     SplitMix64 random(0);
@@ -123,7 +123,7 @@ void bootstrap(const std::vector<Equation>& equations, FloretLattice& lattice)
     lattice.divergence_high = at(0.975);
 }
 
-/// Least squares of whorls over 1, rho^2 and rho^4. Returns the constant.
+/// Fits whorls by least squares as a polynomial in 1, rho^2 and rho^4. Returns its constant.
 double fit_density(const std::vector<glm::dvec3>& places, FloretLattice& lattice)
 {
     glm::dmat3 matrix(0.0);
@@ -143,7 +143,7 @@ double fit_density(const std::vector<glm::dvec3>& places, FloretLattice& lattice
     return found.x;
 }
 
-/// Share of all florets that lie within 0.3 of the pairs' median length of their place, around the axis and outwards.
+/// Share of florets within 0.3 times the pairs' median length of their lattice point, around the axis and outwards.
 double share_in_place(const std::vector<glm::dvec3>& places, double constant, const FloretLattice& lattice)
 {
     std::vector<double> lengths;

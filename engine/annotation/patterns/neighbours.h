@@ -7,8 +7,8 @@
 
 namespace shvr {
 
-/// Numbers of the places around one, itself included: at least `count` others unless there are fewer within 4. `index`
-/// holds the places by their numbers.
+/// Indices of the places around a place, including its own: at least `count` others, unless fewer are within a distance
+/// of 4. `index` holds the places by their indices.
 inline std::vector<uint32_t> neighbours_of(const TraceIndex& index, const std::vector<glm::dvec3>& places,
                                            uint32_t place, size_t count)
 {

@@ -25,7 +25,7 @@ struct PatternRow {
     std::string reason{};  ///< a clause that says why there is no value
 };
 
-/// Rows of a table in the order of the measurements. Names are those of `pattern_measures` (SHVR_CHECK).
+/// Rows of a table in the order in which they were added. Measures must be in `pattern_measures` (SHVR_CHECK).
 class PatternRows {
 public:
     void add(const char* measure, double value) { add(measure, measure, value); }
@@ -45,8 +45,8 @@ private:
     std::vector<PatternRow> rows_;
 };
 
-/// Rows of the table of measures (measures.h): item "pattern" with measure, value and unit; after one without a value,
-/// item "reason" with "MEASURE: REASON". Values have 9 significant digits.
+/// Rows of the table of measures (measures.h): item "pattern" with measure, value and unit. If a value is missing, a
+/// row with item "reason" and the text "MEASURE: REASON" follows. Values have 9 significant digits.
 std::string pattern_csv(const PatternRows& rows, const std::string& unit);
 
 /// The codebook's table, in Markdown.

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::pair<double, const char*> RHOS[] = {{0.3, "0.3"}, {0.5, "0.5"}, {0.7, "0.7"}, {0.9, "0.9"}};
 
-/// Length along the receptacle's surface per distance from the axis.
+/// Length along the receptacle's surface per unit of distance from the axis.
 double stretch_at(const Head& head, double rho)
 {
     return head.receptacle ? std::hypot(1.0, head.receptacle->slope(rho)) : 1.0;
@@ -22,7 +22,7 @@ double stretch_at(const Head& head, double rho)
 
 void add_divergence(const Head& head, const FloretLattice& lattice, PatternRows& rows)
 {
-    // Clockwise, the angle is the rest of 2 pi / jugacy.
+    // For clockwise spirals, the angle is 2 pi / jugacy minus the divergence.
     const double part = TURN / lattice.jugacy;
     const bool is_counterclockwise = lattice.divergence <= 0.5 * part;
     const auto angle = [&](double radians) { return DEGREES * (is_counterclockwise ? radians : part - radians); };

@@ -20,7 +20,7 @@ std::optional<HeadPart> part_named(std::string_view name)
     return {};
 }
 
-/// Returns the part that a group's name states; none if it states none, or several.
+/// Returns the part that a group's name states; none if the name states no part or several.
 HeadPart part_in(const std::string& name)
 {
     constexpr std::pair<const char*, HeadPart> WORDS[] = {{"abaxial", HeadPart::abaxial},

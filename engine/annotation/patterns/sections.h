@@ -15,21 +15,21 @@ const char* name_of(HeadPart part);
 
 struct HeadSections {
     std::array<HeadPart, 256> parts{};  ///< part of each group
-    bool is_stated = false;             ///< by an option or by names of groups, not by the thesis's numbers alone
-    /// Groups of a part, "2" or "2+5"; "none" if there are none.
+    bool is_stated = false;             ///< by an option or by groups' names, not only by the thesis's numbers
+    /// Numbers of a part's groups, such as "2" or "2+5"; "none" if it has no group.
     std::string groups_of(HeadPart part) const;
 };
 
-/// A group as far as sections need it.
+/// The properties of a group that determine its part.
 struct SectionGroup {
     std::string name{};  ///< empty: it has none
     uint8_t parent = 0;  ///< 0: none
 };
 
-/// Returns the part of each group. `stated`, such as "abaxial=1+4,adaxial=2,floret=3", decides if it is not empty; else
-/// names of groups that contain exactly one of the words abaxial, stem, bract (all abaxial), adaxial, floret; parts
-/// without such a group have the thesis's, 1, 2 and 3, unless its name states another part. Descendants of a group are
-/// of its part unless they have their own. Fails with a sentence that begins with `option` if `stated` is malformed.
+/// Returns the part of each group. If `stated`, such as "abaxial=1+4,adaxial=2,floret=3", is not empty, it decides.
+/// Otherwise the words abaxial, stem, bract (all abaxial), adaxial and floret in names decide, if a name contains words
+/// of one part only; a part without such a group gets the thesis's group (1, 2 or 3) unless its name states another
+/// part. Descendants inherit a group's part unless they have their own. Errors about `stated` begin with `option`.
 HeadSections head_sections(const std::string& stated, const std::string& option,
                            const std::function<SectionGroup(uint8_t)>& group);
 

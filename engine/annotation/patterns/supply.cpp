@@ -1,4 +1,4 @@
-// Sectoriality of supply: which stem bundles lie nearest to each floret along the veins (study.md 1.4).
+// Sectoriality of supply: which stem bundles are nearest to each floret, along the veins (study.md 1.4).
 
 #include <algorithm>
 #include <array>
@@ -26,8 +26,8 @@ std::vector<uint32_t> stem_bundles(const Head& head)
     return bundles;
 }
 
-/// The bundles to which the way along the veins is shortest, nearest first, for each node: Dijkstra's algorithm, in
-/// which each node is reached from up to three bundles.
+/// For each node, the up to three bundles with the shortest paths along the veins, nearest first; by Dijkstra's
+/// algorithm, in which a node may be reached from three bundles.
 using Supply = std::vector<std::vector<uint32_t>>;
 Supply supply_of(const Head& head, const std::vector<uint32_t>& bundles)
 {
@@ -49,7 +49,7 @@ Supply supply_of(const Head& head, const std::vector<uint32_t>& bundles)
     return supply;
 }
 
-/// Jaccard's index of the `count` nearest bundles of two florets.
+/// Jaccard index of the sets of the `count` bundles nearest to each of two florets.
 double overlap(const std::vector<uint32_t>& one, const std::vector<uint32_t>& other, size_t count)
 {
     const size_t ones = std::min(count, one.size()), others = std::min(count, other.size());
@@ -59,7 +59,7 @@ double overlap(const std::vector<uint32_t>& one, const std::vector<uint32_t>& ot
     return shared / (double(ones + others) - shared);
 }
 
-/// Mean overlaps of neighbouring florets in one row along a radius, and side by side.
+/// Adds the mean overlaps of neighbouring florets: along a radius (row), and around the axis (side).
 void add_overlaps(const Head& head, const std::vector<uint32_t>& florets, const Supply& supply, PatternRows& rows)
 {
     std::vector<glm::dvec3> places;
@@ -96,7 +96,7 @@ void add_overlaps(const Head& head, const std::vector<uint32_t>& florets, const 
     }
 }
 
-/// Mean, over bundles, of the shortest arc that holds 9 of 10 florets nearest to the bundle.
+/// Mean, over bundles, of the shortest arc with 9 of 10 of the florets whose nearest bundle it is.
 double sector_width(const Head& head, const std::vector<uint32_t>& florets, const Supply& supply)
 {
     std::vector<std::pair<uint32_t, double>> turns;  // bundle, azimuth in turns

@@ -14,14 +14,14 @@ struct VeinNode {
     glm::dvec3 at;
     HeadPart part;  ///< part of its group
 };
-/// An internode. Its part is that of its own group, or else that of both of its nodes.
+/// An internode. Its part is that of its group; if the group has none, the part that both of its nodes have.
 struct VeinLink {
     uint32_t a, b;  ///< indices of nodes
     HeadPart part;
     bool is_connection;  ///< its nodes are of two parts
     double length;
     uint32_t other(uint32_t node) const { return node == a ? b : a; }
-    /// Whether it is a piece of the part's veins, and no connection.
+    /// Whether the internode is a piece of a vein of this part, and not a connection.
     bool is_vein_of(HeadPart of) const { return part == of && !is_connection; }
 };
 

@@ -1,4 +1,4 @@
-// Course, spacing and net of adaxial veins (study.md 1.4; thesis, figure 5.4).
+// Course, spacing and network of adaxial veins (study.md 1.4; thesis, figure 5.4).
 
 #include <algorithm>
 #include <array>
@@ -23,7 +23,7 @@ std::vector<const VeinLink*> adaxial_veins(const Head& head)
     return veins;
 }
 
-/// The receptacle's tangent plane at the distance of `at` from the axis; perpendicular to the axis without a surface.
+/// The receptacle's tangent plane at the rho of `at`; if the surface is unknown, a plane perpendicular to the axis.
 struct TangentPlane {
     glm::dvec3 outwards, normal;
 };
@@ -60,7 +60,7 @@ void add_droop(const Head& head, const std::vector<const VeinLink*>& veins, Patt
         rows.miss("droop", "the receptacle's surface is not known; expected 8 florets or more, over 0.3 of the radius");
         return;
     }
-    constexpr double BEYOND = 0.05;  // of the head's radius, outside the florets that define the surface
+    constexpr double BEYOND = 0.05;  // in head radii: margin around the florets that define the surface
     double sum = 0.0, length = 0.0;
     for (const VeinLink* vein : veins) {
         const glm::dvec3 middle = head.middle(*vein);
@@ -167,7 +167,7 @@ void add_inner_end(const Head& head, const AdaxialNet& net, PatternRows& rows)
     rows.add("adaxial_inner_end_least", least);
 }
 
-/// Numbers of connected parts, and of those that are rings of nodes with two links.
+/// Number of connected parts, and number of parts that are rings, where all nodes have two links.
 std::pair<size_t, size_t> parts_of(const std::vector<const VeinLink*>& veins, const AdaxialNet& net)
 {
     std::vector<uint32_t> root(net.degrees.size());
