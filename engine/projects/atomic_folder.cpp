@@ -42,7 +42,7 @@ FileDescriptor locked(const fs::path& folder, const fs::path& target)
 {
     FileDescriptor descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (!descriptor) refuse_folder(target, errno);
-    // Some network file systems do not support locks.
+    // Other errors are ignored: some network file systems do not support locks.
     if (::flock(descriptor.number(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
         fail(target.string(), ": another process is writing it; expected no other: wait until it ends");
     return descriptor;
@@ -64,7 +64,7 @@ int exchange_names(const fs::path& one, const fs::path& other)
     return ::renameat2(AT_FDCWD, one.c_str(), AT_FDCWD, other.c_str(), RENAME_EXCHANGE);
 }
 
-/// Tests with two empty folders whether the file system can exchange names.
+/// Tests whether the file system can exchange two names, by exchanging those of two empty folders.
 bool exchanges_names(const fs::path& container, const fs::path& target)
 {
     const fs::path one = container / "one", other = container / "other";
@@ -127,7 +127,7 @@ AtomicFolder::~AtomicFolder()
     remove_remains();
 }
 
-/// If the folder was moved while being written, writing has made new folders at its old place: removes them and fails.
+/// Fails if the folder was moved during writing. Then the writer has made new folders at the old place: removes these.
 void AtomicFolder::expect_in_place()
 {
     struct stat held {
@@ -136,7 +136,7 @@ void AtomicFolder::expect_in_place()
     const bool is_found = ::stat(container_.c_str(), &found) == 0;
     if (is_held && is_found && held.st_dev == found.st_dev && held.st_ino == found.st_ino) return;
     remove_remains();
-    // Removes only empty folders: the labels' folder and the project's folder.
+    // rmdir() only removes empty folders. These are the folder of labels and the project's folder.
     ::rmdir(target_.parent_path().c_str());
     ::rmdir(target_.parent_path().parent_path().c_str());
     fail(target_.string(),
@@ -160,8 +160,8 @@ void AtomicFolder::commit(const std::string& entry)
     remove_remains();
 }
 
-/// Gives the new content the old content's future name before the exchange. Otherwise a process killed in between would
-/// leave the old content in the hidden folder, which the next writer clears.
+/// Renames the new content to the name that the old content is to have, and then exchanges the two. In the other order,
+/// a process killed in between would leave the old content in the hidden folder, which the next writer deletes.
 fs::path AtomicFolder::commit_and_keep_old(const std::string& entry)
 {
     fs::path old;
@@ -194,7 +194,7 @@ void AtomicFolder::exchange(const fs::path& with)
     sync_folder(target_);
 }
 
-/// Replaces the entry file, which makes the new content valid: readers never read content that it does not name.
+/// Replaces the entry file, which makes the new content valid. Readers only read content that the entry file names.
 void AtomicFolder::enter(const std::string& entry)
 {
     const std::vector<std::byte> content = read_file(path_ / entry, MAX_ENTRY_BYTES);
@@ -220,15 +220,15 @@ fs::path AtomicFolder::copy_old()
     return old;
 }
 
-/// Moves something inside the target into the hidden folder, which is then removed. If the process is killed meanwhile,
-/// no partly deleted content is left in the target.
+/// Moves an item of the target into the hidden folder, and then deletes it there. If the process is killed meanwhile,
+/// the target contains no partly deleted item.
 void AtomicFolder::move_out(const fs::path& inside) const
 {
     std::error_code ignored;
     fs::rename(inside, container_ / free_name(container_), ignored);
 }
 
-/// Removes the hidden folder. Files that cannot be removed are harmless; the next writer clears them.
+/// Removes the hidden folder. Files that cannot be removed do no harm, since the next writer deletes them.
 void AtomicFolder::remove_remains()
 {
     std::error_code ignored;

@@ -1,13 +1,13 @@
 #pragma once
-// Writes a folder all or nothing: builds its content in a hidden folder next to the target, and finally exchanges the
-// names of the two. At every moment a reader finds either the old or the new folder, even if the program is killed.
-// Without `commit` the target stays unchanged.
+// Writes a folder atomically: builds its content in a hidden folder next to the target, and finally exchanges the names
+// of the two. At every moment readers find either the old or the new folder, even if the program is killed. Without
+// `commit` the target stays unchanged.
 //
-// If the folder, or a folder around it, is moved away while it is written, it is not created again at its old place:
-// `commit` fails, and leaves whatever is there unchanged.
+// If the target, or a folder that contains it, is moved during writing, it is not created again at its old place:
+// `commit` fails and leaves both places unchanged.
 //
-// The hidden folder `.NAME.shvr-part` has no content of its own that readers of Zarr would list. It is locked while a
-// process works on it. If a process is killed, the next one clears the remains.
+// The hidden folder `.NAME.shvr-part` has no content at its top that readers of Zarr would list. The writing process
+// locks it. If a process is killed, the next writer of the same target deletes its remains.
 //
 // Some network file systems cannot exchange names. There, an existing folder keeps its place: new content goes into a
 // folder inside it with a free name (`inner`). The content becomes valid when the entry file, which names the inner
@@ -38,8 +38,8 @@ public:
     /// Empty if `commit` exchanges names. Otherwise "v1" or the like: the folder inside `path` for everything except
     /// the entry file and the files that are equal in every version.
     const std::string& inner() const { return inner_; }
-    /// Syncs the content, moves it to the target's place, and deletes the old content. `entry`: the file, directly in
-    /// the folder, that leads readers to all other content.
+    /// Syncs the content to disk, moves it to the target's place, and deletes the old content. `entry`: name of the
+    /// file, directly in the folder, from which readers find all other content.
     void commit(const std::string& entry);
     /// Like commit(), but keeps the old content under another name, and returns that name (free_old_name).
     std::filesystem::path commit_and_keep_old(const std::string& entry);
@@ -58,9 +58,9 @@ private:
     std::optional<FileDescriptor> lock_;
 };
 
-/// "paint.old", or "paint.old2" and so on: the first name that is not taken.
+/// Returns "paint.old", "paint.old2" and so on for "paint": the first name that is not taken.
 std::filesystem::path free_old_name(const std::filesystem::path& path);
-/// Renames a folder of this process to the `free_old_name` of `path`, and returns the new name.
+/// Renames a folder made by this process to the `free_old_name` of `path`, and returns the new name.
 std::filesystem::path move_to_old_name(const std::filesystem::path& folder, const std::filesystem::path& path);
 
 }  // namespace shvr

@@ -1,8 +1,8 @@
 #pragma once
-// One dimension of a separable filter with symmetric weights, for import_prepare.cpp. Any thread may call these.
+// One-dimensional pass of a separable filter with symmetric weights, for import_prepare.cpp. Any thread may call these.
 //
-// Sums run from the middle outwards and add both neighbours at a time. So a mirrored volume gives the mirrored result,
-// bit for bit.
+// Sums start at the middle weight and add the two neighbours at equal distance first. So a mirrored volume gives the
+// mirrored result, bit for bit.
 
 #include <cstddef>
 #include <cstring>
@@ -11,8 +11,8 @@
 
 namespace shvr {
 
-/// Number of elements in the blocks in which rows are filtered, few enough that the compiler keeps them in registers.
-/// Buffer lengths are multiples of it.
+/// Rows are filtered in blocks of this many elements, which fit into the processor's registers. Lengths of buffers are
+/// multiples of it.
 inline constexpr size_t BLUR_BLOCK = 16;
 
 inline constexpr size_t padded_length(size_t length)
@@ -51,8 +51,8 @@ void filter_rows(std::span<const Number> weights, const Number* middle, const Nu
     }
 }
 
-/// Filters along one row. `row` points at its first number; weights.size() - 1 more numbers precede and follow the row,
-/// and the buffer is readable up to padded_length(length) beyond.
+/// Filters along one row. `row` points to its first number. In the buffer, weights.size() - 1 numbers precede and
+/// follow the row, and padded_length(length) numbers beyond `row` are readable.
 template <class Number>
 void filter_row(std::span<const Number> weights, const Number* row, Number* out, size_t length)
 {

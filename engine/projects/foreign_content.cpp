@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using SortedJson = nlohmann::json;
 
-/// The attributes that SHVR writes. Attributes of OME-Zarr 0.5 are compared as if they were not nested under "ome".
+/// The attributes that SHVR writes. For OME-Zarr 0.5, attributes nested under "ome" are compared without this prefix.
 const std::set<std::string, std::less<>> OWN_KEYS{
     "version",
     "multiscales",
@@ -85,7 +85,7 @@ bool is_temporary(const std::string& name)
     return name.starts_with(".shvr-");
 }
 
-/// Returns the attributes in the content of .zattrs or zarr.json; attributes under "ome" move to the top.
+/// Returns the attributes stated in a .zattrs or zarr.json. Moves attributes under "ome" up to the top level.
 SortedJson merged_attributes(const SortedJson& document, bool is_3)
 {
     if (!is_3) return document;
@@ -122,7 +122,7 @@ public:
         if (expected) at_values(attributes, merged_attributes(SortedJson::parse(*expected), is_3_), "", name);
     }
 
-    /// `inner`: "" or the folder of a version, which contains the levels of that version.
+    /// `inner`: the folder of this version's levels, relative to the image; "" for levels directly in the image.
     void at_folder(const fs::path& inner)
     {
         const fs::path folder = image_ / inner;
@@ -197,7 +197,7 @@ private:
         }
     }
 
-    /// Ignores values that every save changes: the journal's position and, without name exchange, the levels' folder.
+    /// Ignores values that change with every save: the journal's position; without name exchange, the levels' folder.
     void at_values(const SortedJson& old, const SortedJson& now, const std::string& key, const std::string& file)
     {
         if (key == "shvr") return;
@@ -210,7 +210,7 @@ private:
         } else if (key == "multiscales" && old.is_array() && now.is_array() && old.size() == 1 && now.size() == 1) {
             at_values(old[0], now[0], key, file);
         } else if ((key == "image-label.colors" || key == "image-label.properties") && old.is_array()) {
-            // Groups may have been added since an interrupted save.
+            // Entries for new groups may have been added since an interrupted save; no entry may be missing.
             const auto is_kept = [&](const SortedJson& entry) { return std::ranges::find(now, entry) != now.end(); };
             if (!std::ranges::all_of(old, is_kept)) note_key(key, file);
         } else if (without_paths(old, key) != without_paths(now, key)) {
@@ -226,7 +226,7 @@ private:
         return value;
     }
 
-    /// Returns the metadata of a level; null if SHVR did not write them.
+    /// Returns the metadata of a level, or null if these differ from metadata that SHVR writes.
     std::optional<ZarrMetadata> own_metadata(const fs::path& folder, int64_t level) const
     {
         try {
@@ -265,7 +265,7 @@ private:
 
     const fs::path& image_;
     bool is_3_ = false;
-    bool has_levels_ = false;  ///< images of numbers only have level 0
+    bool has_levels_ = false;  ///< false for images of numbers, which only have level 0
     ForeignContent found_;
 };
 
@@ -276,7 +276,7 @@ bool is_desktop_file(const fs::path& path)
     constexpr std::array<std::string_view, 6> NAMES{".ds_store",   "thumbs.db",  "ehthumbs.db",
                                                     "desktop.ini", ".directory", ".localized"};
     const std::string name = path.filename().string();
-    // On foreign file systems, macOS stores its own metadata about the file NAME in "._NAME".
+    // On non-Apple file systems, macOS stores its own metadata about the file NAME in "._NAME".
     return name.starts_with("._") || std::ranges::find(NAMES, lower_case(name)) != NAMES.end();
 }
 

@@ -13,11 +13,11 @@
 namespace shvr {
 namespace {
 
-/// Bytes that one worker reads at a time from a source without a preferred block size.
+/// Size of the pieces in which a worker reads from a source that has no preferred block size.
 constexpr int64_t TASK_BYTES = int64_t{1} << 20;
 
-/// Returns the smallest and the largest finite value of level 0, exactly: a sample or coarser levels could miss an
-/// extreme, whose reversed value would then exceed its type. Returns 0 and 0 if no voxel is finite.
+/// Returns the smallest and the largest finite value of level 0, or 0 and 0 if no voxel is finite. Reads all voxels: a
+/// sample or coarser level could miss an extreme, whose reversed value would then not fit into the type.
 ValueRange ends_of(const VolumeSource& source, const Progress& progress)
 {
     const VolumeInfo& info = source.info();
@@ -70,7 +70,7 @@ double ImportBox::bytes(const Size3& extent, int workers) const
     const double blocks = voxels_in((source_.info().size + block - int64_t{1}) / block);
     const double held =
         block.z == 1 ? 0.0 : voxels_in(glm::min(extent, Size3(extent.x, block.y, block.z))) * voxel_bytes;
-    // While a block is decoded, memory holds it as stored, as decoded and in the order of the volume.
+    // During decoding, memory holds a block three times: as stored, as decoded, and in the order of the volume.
     return std::min(SOURCE_CACHE_BYTES, blocks * decoded) + double(workers) * (3.0 * decoded + held);
 }
 
@@ -91,7 +91,7 @@ void ImportBox::read_slices(const VoxelBox& part, std::span<std::byte> voxels, W
     });
 }
 
-/// Reads whole blocks along z and y, so that no block is decoded twice.
+/// Reads boxes of whole blocks along z and y, so that no block is decoded twice.
 void ImportBox::read_blocks(const VoxelBox& box, std::span<std::byte> voxels, WorkPool& pool) const
 {
     const Size3 extent = box.size();

@@ -1,6 +1,6 @@
 #pragma once
-// Reads the part of a source that is imported, optionally reversed. For import_prepare.cpp and import_filter.cpp. One
-// thread at a time, the one that owns the pool.
+// Reads the imported part of a source, and reverses its intensities if required. For import_prepare.cpp and
+// import_filter.cpp. Only the thread that owns the pool may call it.
 
 #include <span>
 
@@ -10,10 +10,10 @@
 
 namespace shvr {
 
-/// Maximum bytes of decoded blocks that sources keep.
+/// Upper limit, in bytes, of the decoded blocks that sources cache.
 inline constexpr double SOURCE_CACHE_BYTES = double(64 << 20);
 
-/// Number of voxels as double, which does not overflow for any size.
+/// Number of voxels as a double, which cannot overflow.
 inline double voxels_in(const Size3& extent)
 {
     return double(extent.x) * double(extent.y) * double(extent.z);
@@ -32,8 +32,8 @@ public:
 
     /// Reads the voxels of `part`, counted from the box's first voxel, x fastest, with all workers.
     void read(const VoxelBox& part, std::span<std::byte> voxels, WorkPool& pool) const;
-    /// An upper bound of the memory, in bytes, for reading a part of this size: the source's decoded blocks, and the
-    /// workers' copies of blocks.
+    /// Returns an upper bound, in bytes, of the memory to read a part of this size: the source's cache of decoded
+    /// blocks, and the workers' copies of blocks.
     double bytes(const Size3& extent, int workers) const;
 
 private:
@@ -47,7 +47,7 @@ private:
     double ends_ = 0.0;  ///< smallest plus largest value of the source, for reversing
 };
 
-/// Like make_preparation in import_prepare.h; `progress` reports the pass that finds the range for reversing.
+/// Like make_preparation() in import_prepare.h. `progress` receives the progress of finding the range for a reversal.
 std::unique_ptr<Preparation> make_preparation(const VolumeSource& source, const PreparationOptions& options,
                                               const Progress& progress);
 

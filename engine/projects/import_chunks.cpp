@@ -23,12 +23,12 @@ static_assert(std::endian::native == std::endian::little, "indices of shards are
 
 bool consists_of(Bytes voxel, Bytes chunk)
 {
-    // Compares the chunk with a copy of itself shifted by one voxel.
+    // All voxels are equal if the first equals `voxel` and the chunk equals itself shifted by one voxel.
     return std::memcmp(chunk.data(), voxel.data(), voxel.size()) == 0 &&
            std::memcmp(chunk.data(), chunk.data() + voxel.size(), chunk.size() - voxel.size()) == 0;
 }
 
-/// Returns the chunks along each axis of a full shard.
+/// Returns how many chunks a full shard has along each axis.
 Size3 shard_chunks(const ZarrVolume& volume)
 {
     const std::vector<int64_t>& shape = volume.metadata().sharding->shape;

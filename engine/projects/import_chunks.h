@@ -1,6 +1,6 @@
 #pragma once
-// The files and checksums of the chunks of all levels of a project under construction. Chunks of a level with shards
-// are loose files in PROJECT/shvr/chunks until they are packed into shards.
+// Files and checksums of the chunks of all levels of a project under construction. Where a level has shards, its chunks
+// are separate ("loose") files in PROJECT/shvr/chunks until they are packed into shards.
 
 #include <atomic>
 #include <filesystem>
@@ -21,16 +21,16 @@ public:
     ImportChunks(const std::filesystem::path& project, const VolumeInfo& info, int levels, OmeZarrVersion version,
                  const ZarrCompressor& compressor, bool has_shards, int workers, const FillVoxel& fill = {});
 
-    /// Compresses and writes the voxels of a chunk; writes no file if all of them are the fill value. Different workers
-    /// may write different chunks at the same time; each chunk may be written once.
+    /// Compresses and writes the voxels of a chunk, unless all of them are the fill value. Different workers may write
+    /// different chunks at the same time. Each chunk is written at most once.
     void write(int level, const Size3& chunk, std::span<const std::byte> voxels, int worker);
-    /// Call once all chunks of all levels are written; only then are the members below valid.
+    /// Call this once all chunks of all levels are written. The members below are valid only after this call.
     void finish();
 
-    /// The numbers of the shards of a level that contain chunks; empty if the level has no shards.
+    /// Returns the numbers of those shards of a level that contain chunks; empty if the level has no shards.
     std::vector<int64_t> shards(int level) const;
-    /// Merges the files of a shard's chunks into the shard's file, and removes them. Does nothing if the shard is
-    /// already packed. Any thread may pack any shard.
+    /// Merges the chunk files of a shard into the shard's file, and deletes them. Does nothing if the shard is already
+    /// packed. Any thread may pack any shard.
     void pack(int level, int64_t shard);
     /// Call once all shards are packed.
     void remove_loose() const;
@@ -51,7 +51,7 @@ public:
 
 private:
     struct Level {
-        ZarrVolume volume;  ///< only provides names and places; nothing is read through it
+        ZarrVolume volume;  ///< only provides names and paths; never read
         ZarrVolume loose;   ///< the same array without shards, to which `write` writes chunks
         std::vector<StoredChunk> written{};
     };

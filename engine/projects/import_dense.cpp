@@ -123,7 +123,7 @@ private:
         preparation_.read(slab, buffers_[place], pool_);
     }
 
-    /// Starts writing the slab's chunks and levels, and hashing and counting its slices.
+    /// Starts the tasks for a slab: writing chunks and levels, and hashing and counting its slices.
     std::shared_ptr<WorkPool::Batch> start(const Preparation::Slab& slab, size_t place)
     {
         const std::byte* const voxels = buffers_[place].data();
@@ -176,7 +176,7 @@ private:
         });
     }
 
-    /// Returns the range of a brick that consists of fill values only.
+    /// Returns the range, as bytes, of a brick whose voxels all have the fill value.
     std::vector<std::byte> range_of_fill() const
     {
         std::vector<std::byte> range(2 * bytes_of(info_.type));
@@ -194,8 +194,8 @@ private:
     WorkPool& pool_;
     std::unique_ptr<ImportPyramid> pyramid_;
     ImportTally tally_;
-    std::optional<ChunkHasher> hasher_;  ///< for volumes that may be hashed in chunks
-    int64_t rows_;                       ///< rows of a slab in memory at once
+    std::optional<ChunkHasher> hasher_;  ///< for volumes whose hash may be a hash in chunks
+    int64_t rows_;                       ///< rows of a slab that are in memory at once
     int64_t bands_, slabs_;
     int64_t slabs_done_ = 0;
     std::atomic<int64_t> done_ = 0;

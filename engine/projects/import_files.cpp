@@ -23,13 +23,13 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Increment this when the layout of an import's files or of its state changes.
+/// Version of the layout of an import's files and state. Increment it when either changes.
 constexpr int LAYOUT = 4;
 
-/// Chunks per shard along an axis, 512 voxels: a scan of 2048^3 has 64 shard files, and a shard's index takes 8 KiB.
+/// Chunks per shard along each axis: 512 voxels, so that a scan of 2048^3 has 64 shards, with an index of 8 KiB each.
 constexpr int64_t SHARD_CHUNKS = 8;
 
-/// Returns the components in the order of the array: z, y, x.
+/// Returns the components in the order of array axes: z, y, x.
 Json zyx(const glm::dvec3& vector)
 {
     return {vector.z, vector.y, vector.x};
@@ -50,7 +50,7 @@ std::string signature_of(const fs::path& path)
                     status.st_mtim.tv_nsec);
 }
 
-/// Follows https://ngff.openmicroscopy.org/0.5/#labels-md; our own attributes are stored next to those of OME-Zarr.
+/// Follows https://ngff.openmicroscopy.org/0.5/#labels-md. SHVR's own attributes are stored next to those of OME-Zarr.
 void describe_labels(const LabelImage& labels, Json& label, Json& attributes)
 {
     Json colors = Json::array(), properties = Json::array();
@@ -67,13 +67,13 @@ void describe_labels(const LabelImage& labels, Json& label, Json& attributes)
     ours["shvr_mask"] = 1;
     ours["image"] = labels.painted_on;
     if (!labels.journal) return;
-    // A file's name need not be valid UTF-8.
+    // A file's name need not be valid UTF-8; invalid bytes are replaced.
     const Json name = Json::parse(Json(labels.journal->name).dump(-1, ' ', false, Json::error_handler_t::replace));
     ours["journal"] = {
         {"name", name}, {"record", labels.journal->record}, {"checksum", labels.journal->checksum_digits()}};
 }
 
-/// Returns the attributes of IMAGE/labels; empty if that group does not exist.
+/// Returns the attributes of the group IMAGE/labels; empty if the group does not exist.
 Json listed_labels(const fs::path& folder)
 {
     const std::optional<ZarrNode> node = read_zarr_node(folder);
@@ -83,7 +83,7 @@ Json listed_labels(const fs::path& folder)
     return node->version == 2 ? node->document.value() : node->document.value()["attributes"];
 }
 
-/// Fails if an image cannot be added to the existing list.
+/// Fails if the existing list of label images is malformed, so that no image can be added.
 void check_list_of_labels(const fs::path& folder)
 {
     std::error_code ignored;
@@ -108,7 +108,7 @@ std::string text_of(const Json& document, int indent)
     return document.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-/// Signatures of the file and of files next to it with the same stem (headers refer to them), or of a folder's files.
+/// Returns signatures of a folder's files, or of a file and those with the same stem (headers may refer to them).
 Json signatures_of(const fs::path& origin)
 {
     std::error_code ignored;
@@ -167,11 +167,11 @@ std::vector<std::pair<std::string, std::string>> group_files(OmeZarrVersion vers
 std::string import_attributes(OmeZarrVersion version, const std::string& name, const VolumeInfo& info, int levels,
                               Halving how, const LabelImage* labels, const std::string& folder)
 {
-    const bool has_own_versions = version == OmeZarrVersion::v0_4;  // from OME-Zarr 0.5 on, all share one version
+    const bool has_own_versions = version == OmeZarrVersion::v0_4;  // since OME-Zarr 0.5, one version for all
     Json datasets = Json::array();
     for (int level = 0; level < levels; ++level) {
         const double factor = double(int64_t{1} << level);
-        // The centre of the level's voxel 0 is the middle of the voxels of level 0 that it covers.
+        // The centre of voxel 0 of a level is the centre of the voxels of level 0 that it covers.
         const glm::dvec3 translation = ome_translation(info) + 0.5 * (factor - 1.0) * info.spacing;
         datasets.push_back({{"path", folder + std::to_string(level)},
                             {"coordinateTransformations",
@@ -321,7 +321,7 @@ std::string import_identity(const VolumeSource& source, const fs::path& origin, 
                        options.compressor.shuffle}},
                      {"version", sentence(spelled(options.version.value_or(OmeZarrVersion::v0_4)),
                                           options.has_shards ? " in shards" : "")}};
-    // Nothing tells whether a volume on another machine is still the same: its import is begun again, not continued.
+    // A volume on another machine may change unnoticed, so random numbers prevent that its import is ever resumed.
     if (leads_to_network(origin)) document["once"] = {std::random_device{}(), std::random_device{}()};
     return document.dump(-1, ' ', true, Json::error_handler_t::replace);
 }

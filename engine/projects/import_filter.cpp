@@ -13,7 +13,7 @@
 namespace shvr {
 namespace {
 
-/// Memory for voxels as read from the source (READ_BYTES), and for slices waiting to be blurred along z (PLANE_BYTES).
+/// Memory limits: voxels as read from the source (READ_BYTES), and slices waiting to be blurred along z (PLANE_BYTES).
 constexpr int64_t READ_BYTES = int64_t{32} << 20;
 constexpr int64_t PLANE_BYTES = int64_t{96} << 20;
 constexpr int64_t TASK_ROWS = 8;
@@ -21,7 +21,7 @@ constexpr int64_t TASK_ROWS = 8;
 template <class T>
 using Number = std::conditional_t<std::is_integral_v<T> && sizeof(T) <= 2, float, double>;
 
-/// Converts rows of T to rows of numbers and back, in blocks whose length is known at compile time.
+/// Converts a row of T to a row of floating-point numbers, in blocks whose length is known at compile time.
 template <class T>
 void widen(const T* from, Number<T>* to, size_t length)
 {
@@ -36,8 +36,8 @@ void widen(const T* from, Number<T>* to, size_t length)
     for (; i < length; ++i) to[i] = static_cast<Number<T>>(from[i]);
 }
 
-/// Adding and subtracting 1.5 * 2^23 in float (1.5 * 2^52 in double) rounds to nearest, ties to even, for every value
-/// of a type of up to 16 (32) bits.
+/// Rounds to nearest, ties to even, by adding and subtracting 1.5 * 2^23 in float (1.5 * 2^52 in double). This is
+/// correct for all values of types of up to 16 (32) bits.
 template <class T>
 T to_voxel(Number<T> number)
 {
@@ -73,12 +73,12 @@ bool all_finite(std::span<const T> voxels)
     return true;
 }
 
-/// A slice blurred along x and y; its rows are padded_length(size.x) apart.
+/// A slice blurred along x and y. Successive rows start padded_length(size.x) elements apart.
 template <class T>
 struct Plane {
     std::vector<Number<T>> values;
     // Used only if a voxel is not finite: the blurred fraction of finite voxels, by which values are divided, and the
-    // original slice.
+    // slice before blurring.
     std::vector<Number<T>> shares;
     std::vector<T> original;
 };
@@ -135,8 +135,8 @@ public:
         const double plane = numbers * double(rows_held);
         const double slice = double(size_.x) * double(rows_read) * sizeof(T);
         const double most = std::min(double(slices * factor_), std::max(1.0, double(PLANE_BYTES) / plane));
-        // Spare planes are planes that the blur along z has already passed. If values are not finite, a plane also
-        // needs the blurred share of finite values, and the original values.
+        // Adds planes that are spare, since the blur along z has passed them. If values may be non-finite, a plane also
+        // has the blurred fraction of finite values, and the original values.
         const double planes = most + double(factor_ + 4 * reach(2) + 1);
         const double kinds = std::is_floating_point_v<T> ? 2.0 * plane + slice : plane;
         const auto at_once = double(std::max<int64_t>(1, box_.block().z));
@@ -151,7 +151,7 @@ private:
 
     // ---- Along x and y, slice by slice ----
 
-    /// Makes the planes from `lower` to `upper`, except those that exist already.
+    /// Makes those planes from `lower` to `upper` that do not exist yet.
     void make_planes(int64_t lower, int64_t upper, WorkPool& pool)
     {
         const int64_t end = first_plane_ + int64_t(planes_.size());
@@ -183,7 +183,7 @@ private:
         }
     }
 
-    /// Takes a spare plane if possible, to avoid allocating memory from the system.
+    /// Reuses a spare plane if there is one, to avoid an allocation.
     Plane<T> take_spare()
     {
         if (spare_.empty()) return {};
@@ -223,7 +223,7 @@ private:
         const auto around = size_t(reach(0));
         const auto rows_in = size_t(upper_row - lower_row);
         out.resize(pitch_ * size_t(upper_row_ - lower_row_));
-        // Without a blur along y, the rows already are the plane.
+        // Without a blur along y, the rows are written directly into the plane.
         std::vector<Number<T>>& rows = reach(1) > 0 ? scratch.rows : out;
         rows.resize(pitch_ * rows_in);
         scratch.line.resize(2 * around + pitch_ + BLUR_BLOCK);
@@ -261,8 +261,8 @@ private:
         return planes_[size_t(std::clamp<int64_t>(z, 0, size_.z - 1) - first_plane_)];
     }
 
-    /// Filters a row of a slice along z; row 0 is the first row that the planes contain. `of` selects a member of the
-    /// planes; in planes that lack this member, all its numbers count as 1.
+    /// Filters a row of a slice along z; row 0 is the first row that the planes contain. `of` selects the member of the
+    /// planes to filter. If a plane lacks that member (`shares`), its values count as 1.
     void filter_z(int64_t z, int64_t row, std::vector<Number<T>> Plane<T>::*of, Number<T>* out) const
     {
         const auto row_of = [&](int64_t at) {
@@ -280,7 +280,7 @@ private:
         filter_rows<Number<T>>(weights_[2], row_of(z), before, after, out, pitch_);
     }
 
-    /// Makes a blurred row of a slice, with NaN where the source has NaN.
+    /// Computes a blurred row of a slice. Where the source has NaN, the result has NaN.
     void blurred_row(int64_t z, int64_t row, std::vector<Number<T>>& out, std::vector<Number<T>>& shares) const
     {
         filter_z(z, row, &Plane<T>::values, out.data());
@@ -351,7 +351,7 @@ private:
     std::array<std::vector<Number<T>>, 3> weights_;
     std::vector<Number<T>> ones_;
 
-    int64_t lower_row_ = 0, upper_row_ = 0;  ///< rows of the box that the planes contain
+    int64_t lower_row_ = 0, upper_row_ = 0;  ///< range of the box's rows that planes contain
     int64_t first_plane_ = 0;
     std::deque<Plane<T>> planes_;
     std::vector<Plane<T>> spare_;

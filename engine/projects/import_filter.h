@@ -1,5 +1,5 @@
 #pragma once
-// Blurs or shrinks voxels before they are stored. For import_prepare.cpp, whose header gives the details.
+// Blurs or downscales voxels before they are stored. For import_prepare.cpp; import_prepare.h defines the results.
 
 #include <memory>
 

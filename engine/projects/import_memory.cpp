@@ -15,15 +15,15 @@ namespace shvr {
 namespace {
 
 constexpr int64_t SLAB_BYTES = int64_t{64} << 20;
-/// Size of the XXH3 state of one slice; every slice of a slab has such a state.
+/// Size of the XXH3 state for one slice. All slices of a slab are hashed at the same time.
 constexpr double HASHER_BYTES = 1024.0;
 constexpr double MIB = 1048576.0;
-/// Maximum number of bricks that meet an isolated chunk and the voxels next to it.
+/// Maximum number of bricks that intersect an isolated chunk or the voxels next to it.
 constexpr double MAX_BRICKS = 64.0;
 
-/// Data of all levels that is kept until the end.
+/// Sizes of data of all levels that stays in memory until the end.
 struct Kept {
-    double levels = 0.0;         ///< voxels of coarser levels, and ranges below them
+    double levels = 0.0;         ///< voxels of coarser levels, with the ranges of the voxels below
     double tables = 0.0;         ///< ranges of bricks, checksums of chunks
     double largest_table = 0.0;  ///< tables are written one by one
 };
@@ -47,18 +47,18 @@ Kept kept_of(const VolumeInfo& info)
     return kept;
 }
 
-/// Memory to measure types with too many values to count, in pieces at the end, and to hash slices.
+/// Memory to hash slices, and for types with too many values to count, to measure the written project in pieces.
 double measuring_bytes(const VolumeInfo& info)
 {
     const double all = voxels_in(info.size) * double(bytes_of(info.type));
     return std::min(all, (bytes_of(info.type) > 2 ? 128.0 : 32.0) * MIB);
 }
 
-/// Memory of a worker: a chunk, its levels with ranges, and the buffers of its compression.
+/// Memory of one worker: a chunk, its coarser levels with ranges, and the buffers for compression.
 double worker_bytes(const VolumeInfo& info)
 {
     const auto chunk = double(IMPORT_CHUNK * IMPORT_CHUNK * IMPORT_CHUNK * int64_t(bytes_of(info.type)));
-    const double levels = 4.0 / 3.0;  // a level takes a quarter of the previous one, since rows keep their length
+    const double levels = 4.0 / 3.0;  // sum of 1 / 4^l, since rows keep their full length at every level
     const double counts = bytes_of(info.type) <= 2 ? 8.0 * double(int64_t{1} << (8 * bytes_of(info.type))) : 0.0;
     return 3.0 * levels * chunk + 4.0 * chunk + counts;
 }
@@ -81,7 +81,7 @@ double dense_import_bytes(const Preparation& preparation, int threads, bool keep
     const Kept kept = kept_of(info);
     const double hashes = 16.0 * double(info.size.z) + HASHER_BYTES * double(slices) +
                           2.0 * sizeof(ChunkHasher::Digest) * voxels_in(size_of_level(info.size, IMPORT_REACH));
-    // The state is gathered as a whole, and compressed as a whole; each of these buffers grows by copying.
+    // The state is collected and compressed as a whole, in buffers that are copied when they grow.
     const double state = keeps_state ? 3.0 * (kept.levels + kept.tables + hashes) : 0.0;
     const double table = 3.0 * kept.largest_table;
     return IMPORT_PROGRAM_BYTES + measuring_bytes(info) + places * slab + kept.levels + kept.tables + hashes +

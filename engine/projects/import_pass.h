@@ -1,7 +1,7 @@
 #pragma once
-// A pass over the voxels of a volume: makes the chunks of all levels, and the other data of a project that depends on
-// the voxels. It visits either all voxels in slabs, or only the chunks in which the source stores something; the
-// results are equal. For import_volume.cpp. One thread, the owner of the pool, calls everything except `done`.
+// A pass over the voxels of a volume: makes the chunks of all levels, and all other data of a project that depends on
+// them. A dense pass visits all voxels in slabs; a sparse pass visits only the chunks in which the source stores
+// something. Both give equal results. For import_volume.cpp. Only the pool's owner may call it, except `done`.
 
 #include <functional>
 #include <memory>
@@ -23,23 +23,23 @@ class ImportPass {
 public:
     virtual ~ImportPass() = default;
 
-    /// Saves the state from time to time. No work may be in progress while it is saved.
+    /// Decides when to save the state, and saves it. No task may be running during a save.
     struct Keeper {
         std::function<bool()> is_due;
         std::function<void()> keep;
     };
-    /// Writes all chunks that the loaded state lacks.
+    /// Makes all chunks that are not in the loaded state.
     virtual void run(const Keeper& keeper) = 0;
 
     virtual int64_t all() const = 0;    ///< number of chunks of level 0 to visit
     virtual int64_t done() const = 0;   ///< number of chunks visited; any thread
-    virtual double voxels() const = 0;  ///< number of voxels in all chunks to visit
-    virtual bool is_begun() const = 0;  ///< whether a loaded state already has some chunks
+    virtual double voxels() const = 0;  ///< number of voxels in these chunks
+    virtual bool is_begun() const = 0;  ///< whether a loaded state already contains some chunks
 
-    // ---- Once it has run ----
+    // ---- Results, valid after `run` ----
     /// Returns the ranges of the bricks of a level in their stored form.
     virtual ProjectTable ranges(int level) = 0;
-    /// Returns null if the type has too many values to count each.
+    /// Returns null if the voxel type has too many values to count each of them.
     virtual std::optional<VolumeStatistics> statistics() const = 0;
     virtual std::string content_hash() = 0;
 
@@ -52,12 +52,12 @@ struct ImportSetup {
     Halving halving = Halving::mean;
     FillVoxel fill{};  ///< value of voxels in chunks that are not stored
     int threads = 1;
-    ImportChunks& chunks;  ///< made for one worker more than `threads`
+    ImportChunks& chunks;  ///< made for `threads` + 1 workers
     WorkPool& pool;
 };
 
 std::unique_ptr<ImportPass> make_dense_pass(Preparation& preparation, const ImportSetup& setup);
-/// `origin`: the first voxel of the imported part of `source`; `stored` is aligned with it.
+/// `origin`: the first imported voxel of `source`, with which `stored` is aligned.
 std::unique_ptr<ImportPass> make_sparse_pass(const VolumeSource& source, const Size3& origin, StoredChunks stored,
                                              const ImportSetup& setup);
 
@@ -69,7 +69,7 @@ inline ProjectTable ranges_table(const VolumeInfo& info, int level)
             .element_bytes = 2 * bytes_of(info.type),
             .counts = size_of_level(size_of_level(info.size, level), 5)};
 }
-/// Whether the tables of a volume have an element for every brick and chunk, whatever is stored.
+/// Whether the tables of a volume have an element for every brick and chunk, even where nothing is stored.
 inline bool has_small_tables(const VolumeInfo& info)
 {
     return voxel_count(info) <= MAX_VOXELS_IN_SLICES;

@@ -17,14 +17,14 @@
 namespace shvr {
 namespace {
 
-/// If more than this share of all chunks is stored, visiting all voxels takes no longer. The kind of the hash changes
-/// at the same share (content_hash.h).
+/// If more than this fraction of the chunks is stored, a dense pass takes no longer. At the same fraction, the hash
+/// changes its kind (content_hash.h).
 constexpr double MAX_SHARE_STORED = 0.125;
 /// Memory per block while chunks are listed.
 constexpr int64_t LISTED_BYTES = 256;
 
-/// Whether the mean of any number of voxels with this value equals this value, bit for bit. This is false for a few
-/// 64-bit numbers, whose sums are rounded.
+/// Whether the mean of any number of voxels with this value is the value itself, bit for bit. False for a few 64-bit
+/// floats, whose sums are rounded.
 template <class T>
 bool is_own_mean(T voxel, Halving how)
 {
@@ -50,7 +50,7 @@ bool is_kept_by_levels(const FillVoxel& fill, VoxelType type, Halving how)
     });
 }
 
-/// Whether the blocks that meet one chunk fit into the source's cache, so that no block is decoded repeatedly.
+/// Whether all blocks that intersect a chunk fit into the source's cache together, so that no block is decoded twice.
 bool fit_chunks(const VolumeSource& source)
 {
     double bytes = double(bytes_of(source.info().type));
@@ -83,7 +83,7 @@ void check_all_tables(const std::filesystem::path& project, const VolumeInfo& in
 ImportPlan plan_import(const VolumeSource& source, const std::filesystem::path& project, const ImportOptions& options)
 {
     PreparationOptions preparation = options.preparation;
-    preparation.reverse = false;  // reversal is not measured here, since that would require a pass over all voxels
+    preparation.reverse = false;  // leaves out reversal here, since measuring it requires a pass over all voxels
     const std::unique_ptr<Preparation> prepared = make_preparation(source, preparation);
     const VolumeInfo& info = prepared->info();
     static_cast<void>(voxel_count(info));

@@ -14,7 +14,7 @@ VolumeInfo info_after(const VolumeSource& source, const PreparationOptions& opti
     VolumeInfo info = source.info();
     const int64_t factor = options.downscale;
     info.size = (box.size() + (factor - 1)) / factor;
-    // The centre of the new voxel 0 relative to the centre of the source's voxel 0, in voxels of the source.
+    // Offset of the new voxel 0's centre from the centre of the source's voxel 0, in voxels of the source.
     const glm::dvec3 first = glm::dvec3(box.lower) + 0.5 * double(factor - 1);
     info.origin += info.directions * (info.spacing * first);
     info.spacing *= double(factor);

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-/// If more than an eighth of all chunks is stored, a dense import with all threads takes no longer than a sparse one.
+/// If more than 1 / MIN_GAIN of all chunks is stored, a dense import with all threads is as fast as a sparse one.
 constexpr int64_t MIN_GAIN = 8;
 
 Size3 chunk_counts(const Size3& size)
@@ -41,7 +41,7 @@ struct SparseLevelFiles {
     int64_t bytes = 0;   ///< total size of the chunks' files and of metadata
 };
 
-/// Makes the non-empty chunks of a level and of all finer levels, depth first, so that memory holds one chunk of each
+/// Makes the non-empty chunks of a level and of all finer levels depth-first, so that memory holds only one chunk per
 /// level.
 template <class T>
 class Levels {
@@ -73,7 +73,7 @@ public:
     }
 
 private:
-    /// Takes from `rest` its first chunks that share an ancestor `levels` levels above.
+    /// Removes from `rest`, and returns, its first chunks: those with the same ancestor `levels` levels above.
     static std::span<const Size3> take_below(std::span<const Size3>& rest, int levels)
     {
         const Size3 above = ancestor(rest.front(), levels);
@@ -84,7 +84,7 @@ private:
         return taken;
     }
 
-    /// `below`: the chunks of level 0 below the chunk that is made; at least one.
+    /// `below`: the stored chunks of level 0 that the made chunk covers; at least one.
     void make(int level, std::span<const Size3> below)
     {
         const Size3 chunk = ancestor(below.front(), level), origin = chunk * IMPORT_CHUNK;
@@ -138,7 +138,7 @@ private:
     const VolumeInfo& info_;
     const ZarrCompressor& compressor_;
     const Progress& progress_;
-    std::vector<ZarrVolume> volumes_;  ///< only provide names and places; nothing is read through them
+    std::vector<ZarrVolume> volumes_;  ///< only provide names and paths; never read
     std::vector<ImportCube<T>> cubes_;
     ImportCube<T> half_;
     std::vector<T> voxels_;
@@ -186,7 +186,7 @@ std::string replaced_in_words(const fs::path& image, const fs::path& old)
                     ", and what is saved is this program's");
 }
 
-/// Writes a whole image. `attributes(folder)` returns the attributes of an image whose levels are in that folder.
+/// Writes a whole image. `attributes(folder)`: returns the image's attributes if its levels are in `folder`.
 WrittenImage write_image(const VolumeSource& source, const VolumeInfo& info, int levels, const fs::path& target,
                          const std::vector<Size3>& chunks, const ImportOptions& options,
                          const std::function<std::string(const std::string& folder)>& attributes,
@@ -217,7 +217,7 @@ WrittenImage write_image(const VolumeSource& source, const VolumeInfo& info, int
             return {std::move(report), replaced_in_words(target, folder.commit_and_keep_old(entry))};
         case Foreign::excluded: content = desktop_files_in(target); break;
         case Foreign::kept: content = foreign_content(target, text); break;
-        case Foreign::refused:  // checks again, because the work took a while
+        case Foreign::refused:  // checks again, since other programs may have written meanwhile
             expect_no_foreign_content(target);
             content = foreign_content(target);
             break;
@@ -231,7 +231,7 @@ WrittenImage write_image(const VolumeSource& source, const VolumeInfo& info, int
     return {std::move(report), {}};
 }
 
-/// Calls the `progress` of the options at most every 100 ms; throws if the options' `cancel` is set.
+/// Calls the options' `progress` at most every 100 ms. Throws if the options' `cancel` is set.
 class ToldImport {
 public:
     ToldImport(const fs::path& target, const VolumeInfo& info, const ImportOptions& options)
@@ -311,7 +311,7 @@ std::string save_label_image(const VolumeSource& labels, const fs::path& folder,
     ImportOptions wanted = options;
     wanted.label_image = image;
     if (belongs) wanted.label_image->source = "../../";
-    // Any version may be replaced, but that of the image to which the labels belong counts.
+    // An image of any version may be replaced, but labels must have the version of the image to which they belong.
     wanted.version = replaces_any && !belongs ? options.version.value_or(OmeZarrVersion::v0_4)
                                               : label_image_version(target, options.version);
     const std::optional<std::vector<Size3>> chunks = stored_chunks(labels);

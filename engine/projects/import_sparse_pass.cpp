@@ -1,5 +1,5 @@
-// Visits only chunks in which the source stores something; chunks below one chunk of a coarser level are visited in a
-// row. All workers make level 0; coarser levels follow in order, each with one unfinished chunk in memory.
+// Visits only chunks in which the source stores something, in an order in which all chunks below a coarser chunk are
+// adjacent. All workers make level 0; coarser levels are made in order, each with one unfinished chunk in memory.
 
 #include <algorithm>
 #include <array>
@@ -54,7 +54,7 @@ public:
         while (merged_ < stored_.keys.size()) {
             pool_.wait(batch);
             const size_t next = std::min(merged_ + at_once_, stored_.keys.size());
-            // A saved state must not contain a part of a batch.
+            // The state is saved between batches only, since it must not contain a part of a batch.
             const bool keeps = next < stored_.keys.size() && keeper.is_due();
             if (!keeps) batch = start(next, 1 - place);
             for (size_t i = merged_; i < next; ++i) merge(stored_.at(i), halves_[place][i - merged_]);
@@ -138,13 +138,13 @@ public:
     }
 
 private:
-    /// A chunk of a coarser level for which some chunks below are still missing.
+    /// An unfinished chunk of a coarser level: some chunks below it are still to come.
     struct Open {
         std::optional<Size3> at{};
         ImportCube<T> cube;
     };
 
-    /// The part of a source that is imported, as a source of its own.
+    /// Presents the imported part of a source as a source.
     class BoxOf final : public VolumeSource {
     public:
         BoxOf(const VolumeSource& source, VolumeInfo info, const Size3& origin, const StoredChunks& stored)
@@ -224,7 +224,7 @@ private:
         return {chunk.x >> levels, chunk.y >> levels, chunk.z >> levels};
     }
 
-    /// Begins a chunk of a coarser level, filled with the fill value.
+    /// Starts a chunk of a coarser level, filled with the fill value.
     void begin(size_t i, const Size3& at)
     {
         ImportCube<T>& cube = open_[i].cube;

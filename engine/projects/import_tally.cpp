@@ -58,7 +58,7 @@ std::optional<VolumeStatistics> ValueCounts::statistics() const
     if (counts.empty()) return std::nullopt;
     const bool is_signed = type_ == VoxelType::int8 || type_ == VoxelType::int16;
     if (!is_signed) return statistics_of(counts, 0);
-    // Sorted by their bits, negative values come after non-negative ones.
+    // In the order of their bit patterns, negative values come after all others.
     const auto half = std::ptrdiff_t(counts.size() / 2);
     std::vector<int64_t> ascending(counts.begin() + half, counts.end());
     ascending.insert(ascending.end(), counts.begin(), counts.begin() + half);

@@ -1,6 +1,6 @@
 #pragma once
-// Data that an import gathers about level 0 while it streams through: the hash of every slice and, for types of 8 and
-// 16 bits, how often each value occurs.
+// Data that an import collects about level 0 as it is read: the hash of every slice and, for types of 8 and 16 bits,
+// how often each value occurs.
 
 #include <cstdint>
 #include <optional>
@@ -14,15 +14,15 @@
 
 namespace shvr {
 
-/// Counts how often each value occurs, for types of 8 and 16 bits; counts nothing for other types. Different workers
-/// may add at the same time.
+/// Counts how often each value occurs, for types of 8 and 16 bits; does nothing for other types. Different workers may
+/// add at the same time.
 class ValueCounts {
 public:
     ValueCounts(VoxelType type, int workers);
     void add(std::span<const std::byte> voxels, int worker);
-    /// Adds `times` voxels with the value `voxel`, without visiting them one by one.
+    /// Adds `times` voxels with the value `voxel` in one step.
     void add(std::span<const std::byte> voxel, int64_t times, int worker);
-    /// Returns null if the type has too many values to count each.
+    /// Returns null if the voxel type has too many values to count each of them.
     std::optional<VolumeStatistics> statistics() const;
     void save(StateWriter& state) const { state.put_all(total()); }
     void load(StateReader& state) { state.take_all(counts_[0]); }
@@ -31,15 +31,15 @@ private:
     std::vector<int64_t> total() const;
 
     VoxelType type_;
-    std::vector<std::vector<int64_t>> counts_;  ///< by worker, then by the value's bits
+    std::vector<std::vector<int64_t>> counts_;  ///< first index: worker; second: the bits of the value
 };
 
 class ImportTally {
 public:
-    /// Between two calls of `finish`, rows of up to `slices_at_once` slices may arrive.
+    /// `slices_at_once`: how many different slices may receive rows between two calls of `finish`.
     ImportTally(const VolumeInfo& info, int64_t slices_at_once, int workers);
 
-    /// Adds the next rows of slice `slice`. Different workers may add rows of different slices at the same time.
+    /// Adds the next rows of slice `slice`. Different workers may add to different slices at the same time.
     void add(int64_t slice, std::span<const std::byte> rows, int worker);
     /// Call once all rows of the slices from `lower` to `upper` have been added.
     void finish(int64_t lower, int64_t upper);
@@ -48,7 +48,7 @@ public:
     std::string content_hash() const;
     std::optional<VolumeStatistics> statistics() const { return counts_.statistics(); }
 
-    /// Call only while no slice is partly added.
+    /// Call this only when no slice is partly added.
     void save(StateWriter& state) const;
     void load(StateReader& state);
 
@@ -56,7 +56,7 @@ private:
     SliceHasher& hasher_of(int64_t slice);
 
     std::vector<SliceHash> hashes_;     ///< by slice
-    std::vector<SliceHasher> hashers_;  ///< hashers of unfinished slices, by slice number modulo their count
+    std::vector<SliceHasher> hashers_;  ///< hashers of unfinished slices, at index (slice number modulo size)
     ValueCounts counts_;
 };
 

@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 using Bytes = std::span<const std::byte>;
 
-/// Interval between saves of the state, as a multiple of the time that a save takes, so that saving costs 5 %.
+/// Interval between saves of the state, in durations of a save: saving takes 5 % of the time.
 constexpr double STATE_INTERVAL = 20.0;
 
 double seconds_since(Clock::time_point begin)
@@ -34,7 +34,7 @@ double seconds_since(Clock::time_point begin)
     return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-/// Refuses processing of labels that would create new label numbers.
+/// Refuses processing that would turn labels into other numbers.
 void check_labels(const VolumeInfo& info, const PreparationOptions& preparation)
 {
     if (info.type == VoxelType::float32 || info.type == VoxelType::float64)
@@ -49,7 +49,7 @@ void check_labels(const VolumeInfo& info, const PreparationOptions& preparation)
 
 class Import {
 public:
-    /// Progress of the pass that finds the range of voxels to be reversed.
+    /// Returns a callback for the progress of finding the range of values, which a reversal needs.
     static Progress looking(const ImportOptions& options)
     {
         return [&options](double fraction) {
@@ -116,7 +116,7 @@ private:
                              : make_dense_pass(*preparation_, setup);
     }
 
-    /// Label images are never resumed: changes of their sources are not reflected in any file.
+    /// Label images are never resumed, since no file would show that their source has changed in between.
     bool is_resumable() const { return !options_.label_image && options_.gaps == nullptr; }
     bool is_state_due() const
     {
@@ -131,7 +131,7 @@ private:
         state_seconds_ = seconds_since(begin);
     }
 
-    /// Writes the state last, after everything that it refers to is on disk.
+    /// Writes the state after everything to which it refers is on the disk.
     void write_state()
     {
         StateWriter state;
@@ -141,7 +141,7 @@ private:
         state.write(folder_.state());
     }
 
-    /// Resumes from a saved state; returns false if there was none. Deletes a damaged state, or another import's state.
+    /// Resumes from a saved state; returns false if there is none. Deletes a state that is damaged or another import's.
     bool resume(const std::vector<std::string>& warnings)
     {
         report_.warnings = warnings;
@@ -178,7 +178,7 @@ private:
         }
     }
 
-    /// Packs all chunks, written as separate files, into shards: a shard spans many slabs, and is written only once.
+    /// Packs the separate chunk files into shards, at the end: a shard spans many slabs, and is written only once.
     void pack_shards()
     {
         for (int level = 0; level < chunks_->levels(); ++level) {
@@ -204,7 +204,7 @@ private:
         }
         note_gaps();
         ProjectRecord record{.info = info_, .levels = chunks_->levels()};
-        // Types with too many values to count each are measured in the written project, without the source.
+        // If a type has too many values to count each, the written project is measured instead of the source.
         const std::optional<VolumeStatistics> counted = pass_->statistics();
         record.statistics = counted ? *counted
                                     : measure(*open_ome_zarr(folder_.path(), {}),
@@ -247,7 +247,7 @@ private:
         report_.bricks = chunks_->all();
         report_.bricks_stored = chunks_->stored();
         report_.bytes = chunks_->bytes() + other_bytes_;
-        if (options_.label_image) expect_no_foreign_content(origin_);  // checks again, because the work took a while
+        if (options_.label_image) expect_no_foreign_content(origin_);  // checks again, after a long export
         folder_.finish();
         report_.project = folder_.path();
     }
@@ -288,7 +288,7 @@ private:
     std::unique_ptr<Preparation> preparation_;
     VolumeInfo info_;
     std::string identity_;
-    PartFolder folder_;  ///< declared last, so that no folder is made if creating any member above fails
+    PartFolder folder_;  ///< declared last, so that no folder is made if constructing another member fails
     int threads_;
     ImportReport report_;
 
@@ -299,10 +299,10 @@ private:
     Clock::time_point begin_{}, told_{}, state_written_{};
     double state_seconds_ = 0.0;
 
-    WorkPool pool_;  ///< declared last: its tasks use all members above
+    WorkPool pool_;  ///< declared last, so that tasks end before other members are destroyed
 };
 
-/// Returns a sentence if unfinished work could not be removed; otherwise empty.
+/// Returns a sentence if unfinished work could not be removed; otherwise an empty text.
 std::string remains_of(const fs::path& part)
 {
     std::error_code error;
@@ -310,7 +310,7 @@ std::string remains_of(const fs::path& part)
     return sentence("; ", part.string(), " could not be removed: the same command replaces it, rm -r removes it");
 }
 
-/// Exports a label image, completely or not at all.
+/// Exports a label image; after a failure, removes all that was written.
 ImportReport import_all(const VolumeSource& labels, const fs::path& target, const ImportOptions& options)
 {
     const ImportPlan plan;

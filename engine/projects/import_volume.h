@@ -3,8 +3,8 @@
 //
 // The source is read once, slab by slab; memory depends on the size of a slice, not on the number of slices. Chunks
 // have 64^3 voxels, are compressed with blosc (zstd, bytes shuffled), and are not written if all their voxels are 0.
-// The project appears only when complete: until then it is PROJECT.part, with a state from which the same call resumes
-// after it was stopped or killed, or after the disk was full. Equal input gives equal bytes, in one run or several.
+// Until the project is complete it is PROJECT.part, with a saved state from which the same call resumes after it was
+// stopped or killed, or after the disk was full. Equal input gives equal bytes, in one run or several.
 
 #include <array>
 #include <atomic>
@@ -25,7 +25,7 @@
 
 namespace shvr {
 
-/// The import was cancelled; completed work is kept.
+/// Thrown if the import was cancelled. Completed work is kept.
 class ImportStopped : public Error {
 public:
     using Error::Error;
@@ -37,7 +37,7 @@ struct ImportProgress {
     double seconds_left = 0.0;
 };
 
-/// Labels stored with an image, for other programs and for readers of labels; not a project.
+/// A label image: labels stored with an image, for other programs and for reading as a mask. It is not a project.
 struct LabelImage {
     struct Color {
         int64_t value;
@@ -45,41 +45,41 @@ struct LabelImage {
         std::string name;  ///< may be empty
     };
     std::vector<Color> colors{};
-    std::string source{};  ///< the image of these labels, as a path relative to the folder of labels; empty: not stated
-    /// The hash of the voxels of the image that was painted on (content_hash.h). It distinguishes a mask from masks of
-    /// other images of the same size; empty: not stated.
+    std::string source{};  ///< path of the labelled image relative to the folder of labels; empty: not stated
+    /// The hash of the voxels of the image that was painted on (content_hash.h). It tells a mask from masks of other
+    /// images that have the same size. Empty: not stated.
     std::string painted_on{};
-    /// The journal of the work at the time of saving: its file's name, and the number and checksum of its last record
-    /// at that time.
+    /// The journal of the work at the time of saving: the name of its file, and the number and checksum of its last
+    /// record.
     struct Journal {
         std::string name;
         uint64_t record = 0, checksum = 0;
         bool operator==(const Journal&) const = default;
-        /// As 16 hexadecimal digits in JSON, since some readers do not support 64-bit integers.
+        /// Returns 16 hexadecimal digits, for JSON: some readers do not support 64-bit integers.
         std::string checksum_digits() const;
     };
     std::optional<Journal> journal{};  ///< stated only if `painted_on` is stated
-    /// The header of an NRRD mask that these labels replace or began with: it may describe segments in words that SHVR
-    /// does not understand, for a later export. Null: none.
+    /// The header of an NRRD mask that these labels replace or were loaded from. It may describe segments in fields
+    /// that SHVR does not interpret, and is kept for a later export. Null: none.
     std::optional<NrrdHead> header{};
 };
 
 struct ImportOptions {
     PreparationOptions preparation{};
-    Halving halving = Halving::mean;  ///< how coarser levels are made; Halving::label keeps labels whole numbers
-    std::string choice{};  ///< how the file was read: channel, frame, layout; only compared with an earlier run
+    Halving halving = Halving::mean;  ///< how coarser levels are made; use Halving::label for labels
+    std::string choice{};             ///< how the file was read: channel, frame, layout; must be the same to resume
     bool overwrites = false;
     std::optional<LabelImage> label_image{};  ///< with Halving::label; see export_label_image
     int threads = 0;                          ///< 0: one per core
     int64_t budget_host_bytes = 0;            ///< 0: three quarters of the machine's memory; see import_memory.h
     ZarrCompressor compressor{.kind = ZarrCompressor::Kind::blosc};
-    /// Null: 0.4; for label images, the version of the image they belong to, or else of the label image they replace.
+    /// Null: 0.4; for label images, the version of the image to which they belong, or else of the replaced label image.
     std::optional<OmeZarrVersion> version{};
     bool has_shards = false;  ///< OME-Zarr 0.5 only: stores up to 512 chunks in a file (import_files.h)
     std::function<void(const ImportProgress&)> progress{};  ///< called about every 100 ms, on the calling thread
-    const std::atomic<bool>* cancel = nullptr;              ///< checked before every task; tasks take milliseconds
-    /// What the source, a GapSource, could not read; null: it fails there. The import reports it and the project states
-    /// it. Such an import continues no other run, since only this one knows what it could not read.
+    const std::atomic<bool>* cancel = nullptr;              ///< checked before every task, every few milliseconds
+    /// Collects what `source`, a GapSource, could not read; null: unreadable voxels end the import. The import reports
+    /// gaps, and the project states them. An import with gaps is never resumed, since only the current run knows them.
     const Gaps* gaps = nullptr;
 };
 
@@ -92,20 +92,20 @@ struct ImportReport {
     int64_t bytes = 0;          ///< total size of all files
     bool was_resumed = false;
     std::vector<std::string> warnings;
-    int64_t voxels_not_read = 0;  ///< have the lowest value of their type, or NaN
+    int64_t voxels_not_read = 0;  ///< unreadable voxels, which have the lowest value of their type, or NaN
 };
 
-/// `origin` is the file from which `source` was opened. Fails with one sentence; throws `ImportStopped` if cancelled.
+/// `origin`: the file from which `source` was opened. Fails with one sentence; throws `ImportStopped` if cancelled.
 ImportReport import_volume(const VolumeSource& source, const std::filesystem::path& origin,
                            const std::filesystem::path& project, const ImportOptions& options);
 
-/// Whether the name of this path is that of a label image: NAME.zarr, or IMAGE/labels/NAME.
+/// Whether a path has the name of a label image: NAME.zarr, or IMAGE/labels/NAME.
 bool is_label_image(const std::filesystem::path& path);
 
 /// Exports labels (whole numbers) as an OME-Zarr label image with its levels, without a folder shvr/. The image appears
-/// only when complete and replaces an existing label image; any other content of that path is refused. If the path is
-/// IMAGE/labels/NAME, the label image is added to the list in IMAGE/labels, refers to IMAGE, and must have the version
-/// of IMAGE. Uses only threads, compressor, version, progress and cancel of `options`. A failed export leaves nothing
+/// only when complete. It may replace a label image; a path with any other content is refused. If the path is
+/// IMAGE/labels/NAME, the label image is added to the list in IMAGE/labels, refers to IMAGE, and must have IMAGE's
+/// version. Uses only threads, compressor, version, progress and cancel of `options`. A failed export leaves nothing
 /// behind.
 ImportReport export_label_image(const VolumeSource& labels, const std::filesystem::path& folder,
                                 const LabelImage& image, const ImportOptions& options = {});

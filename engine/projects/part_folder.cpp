@@ -50,7 +50,7 @@ FileDescriptor locked(const fs::path& folder)
     FileDescriptor descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (!descriptor) fail(folder.string(), ": cannot be opened: ", reason_of(errno));
     if (::flock(descriptor.number(), LOCK_EX | LOCK_NB) == 0) return descriptor;
-    // Some network file systems do not support locks.
+    // Works without a lock on network file systems that do not support locks.
     if (errno != EWOULDBLOCK) return descriptor;
     fail(folder.string(),
          ": another process is importing into it; expected no other: wait until it ends, or choose another name");
@@ -63,7 +63,7 @@ bool is_zarr(const fs::path& folder)
     return std::ranges::any_of(METADATA, [&](const char* name) { return is_there(folder / name); });
 }
 
-/// Whether the path may lie directly in a project or another Zarr folder: metadata, arrays, groups, chunks, or shvr.
+/// Whether SHVR or Zarr may put such an entry directly into a project: metadata, arrays, groups, chunks, or shvr.
 bool belongs_to_zarr(const fs::path& path)
 {
     const std::string name = path.filename().string();
@@ -78,8 +78,8 @@ bool is_temporary(const fs::path& path)
     return path.filename().string().starts_with(".shvr-");
 }
 
-/// Returns entries that neither belong to a project or another Zarr folder nor come from a file browser: they must not
-/// be deleted with the folder. At most MAX_FOREIGN_NAMES.
+/// Returns entries that belong neither to a project or another Zarr folder nor to a file browser, so that the folder
+/// must not be deleted. At most MAX_FOREIGN_NAMES.
 std::vector<std::string> entries_foreign_to_zarr(const fs::path& folder)
 {
     std::vector<std::string> names;
@@ -111,7 +111,7 @@ PartFolder::PartFolder(const fs::path& target, bool overwrites)
     refuse_target();
     if (!is_there(part_)) make_folder(part_);
     lock_.emplace(locked(part_));
-    // A folder that merely has this name must not be cleared. An import's folder has a state, or hardly any content.
+    // A folder that only happens to have this name must stay. An import's folder has a state, or only the folder shvr.
     if (is_there(state())) return;
     std::error_code error;
     for (const fs::directory_entry& entry : fs::directory_iterator(part_, error)) {
@@ -163,9 +163,9 @@ void PartFolder::sync() const
 void PartFolder::finish()
 {
     sync();
-    refuse_target();  // checks again, because the work took a while
+    refuse_target();  // checks again, since the target may have appeared meanwhile
     if (is_there(target_) && !is_empty_folder(target_)) {
-        // Exchanges the names atomically, so that a project exists at every moment.
+        // Exchanges the two names atomically, so that at every moment one of the projects is in place.
         if (::renameat2(AT_FDCWD, part_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0) {
             refuse_write(target_, errno);
         }
@@ -180,7 +180,7 @@ void PartFolder::finish()
     fs::remove(state(), ignored);
     fs::remove(state().parent_path(), ignored);  // removes it only if it is empty
     const FileDescriptor parent(::open(target_.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-    // EINVAL: the file system cannot sync folders. EACCES: we may write to the folder but not list it.
+    // Ignores EINVAL (file system cannot sync folders) and EACCES (folder is writable but not readable).
     if (parent && ::fsync(parent.number()) != 0 && errno != EINVAL && errno != EACCES) {
         fail(target_.string(),
              ": is written, but a power cut could lose it; its folder cannot be synced: ", reason_of(errno));
@@ -215,11 +215,11 @@ void write_part_file(const fs::path& path, std::span<const std::byte> content)
     while (!content.empty()) {
         const ssize_t count = ::write(file.number(), content.data(), content.size());
         if (count < 0 && errno == EINTR) continue;
-        // Some network file systems report a full disk as "nothing written".
+        // Writing nothing without an error means a full disk on some network file systems.
         if (count <= 0) refuse_write(path, count < 0 ? errno : ENOSPC);
         content = content.subspan(size_t(count));
     }
-    // Starts writing to the disk now rather than at the final sync. A failure here loses nothing.
+    // Starts writing to the disk early, which shortens the final sync. A failure here does no harm.
     static_cast<void>(::sync_file_range(file.number(), 0, 0, SYNC_FILE_RANGE_WRITE));
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// A chunk of a volume being imported, and the coarser levels made from it. For import_pyramid.cpp.
+// A chunk of a volume during import, and the coarser levels computed from it. For import_pyramid.cpp.
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +13,8 @@
 
 namespace shvr {
 
-/// The voxels of one level below a chunk, and for each voxel its range in level 0. Rows are always IMPORT_CHUNK voxels
-/// long, so that loops over them have a length known at compile time; a slice has `side` rows.
+/// The voxels of one level of a chunk and, for each voxel, the range of the voxels of level 0 below. Rows always have
+/// IMPORT_CHUNK elements, so that loops have a length known at compile time. A slice has `side` rows.
 template <class T>
 struct ImportCube {
     explicit ImportCube(int64_t rows) : side(rows), values(size_t(rows * rows * IMPORT_CHUNK)) {}
@@ -25,11 +25,11 @@ struct ImportCube {
 
     int64_t side;
     Size3 extent{0};
-    bool has_ranges = false;  ///< if false, the range of a voxel is its own value
+    bool has_ranges = false;  ///< if false, each voxel's range is its value alone
     std::vector<T> values, lower, upper;
 };
 
-/// Finds the ranges of level 0. Ranges are needed only if some voxels are not finite; such voxels have empty ranges.
+/// Sets the ranges of level 0. They are needed only if some voxels are not finite: these get empty ranges.
 template <class T>
 void find_own_ranges(ImportCube<T>& cube)
 {
@@ -74,7 +74,7 @@ void halve_ranges(const ImportCube<T>& fine, const HalvingRows<T>& rows, T* lowe
 
 enum class CubeRanges { none, halved };
 
-/// Makes the next coarser level, with its ranges if they are wanted.
+/// Computes the next coarser level, with its ranges if requested.
 template <class T>
 void halve_cube(const ImportCube<T>& fine, ImportCube<T>& coarse, Halving how, CubeRanges ranges = CubeRanges::halved)
 {

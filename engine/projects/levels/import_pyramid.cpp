@@ -13,7 +13,7 @@ namespace {
 
 constexpr int REACH = IMPORT_REACH;
 
-/// The slices of a level that are in memory: 64 slices, or the whole level.
+/// The slices of a level that are kept in memory: 64 slices, or the whole level if it is small.
 template <class T>
 struct Window {
     Window(const Size3& size_of_volume, int level)
@@ -28,7 +28,7 @@ struct Window {
         upper.resize(values.size());
     }
 
-    /// Returns the index in the window of a voxel of the level.
+    /// Returns the index in `values` of a voxel of the level.
     size_t at(int64_t x, int64_t y, int64_t z) const
     {
         return size_t(x + size.x * (y + size.y * (is_whole ? z : z % IMPORT_CHUNK)));
@@ -36,7 +36,7 @@ struct Window {
 
     Size3 size;
     bool is_whole;
-    bool keeps_ranges;  ///< whether the next six coarser levels are made from this level
+    bool keeps_ranges;  ///< whether ranges are kept, since this level is the base of the next six
     int64_t slices;
     std::vector<T> values, lower, upper;
 };
@@ -139,7 +139,7 @@ private:
 
     const Window<T>& window_of(int level) const { return windows_[size_t(level - 1)]; }
 
-    /// Fills the rows within `extent` with `put`, and all voxels outside it with the fill value.
+    /// Fills the rows inside `extent` by calling `put`, and all voxels outside with the fill value.
     template <class Put>
     void fill(ImportCube<T>& cube, const Size3& extent, const Put& put) const
     {
@@ -156,7 +156,7 @@ private:
         }
     }
 
-    /// Makes the six levels above the cube of level `base` in the worker's scratch memory.
+    /// Computes the six levels above a cube of level `base`, in the worker's scratch memory.
     void cascade(int base, const Size3& origin, int worker)
     {
         std::vector<ImportCube<T>>& cubes = scratch_[size_t(worker)].cubes;
@@ -170,7 +170,7 @@ private:
         }
     }
 
-    /// Needs no lock: chunks do not overlap, so neither do the regions they write.
+    /// Needs no lock, since different chunks write to disjoint regions of the window.
     static void store(const ImportCube<T>& cube, const Size3& origin, Window<T>& window)
     {
         for (int64_t z = 0; z < cube.extent.z; ++z) {

@@ -1,14 +1,14 @@
 #pragma once
-// Makes the levels of a volume while its level 0 streams through in chunks of 64^3 voxels.
+// Computes the levels of a volume while level 0 is read in chunks of 64^3 voxels.
 //
 // A voxel of level l + 1 is the mean of the 2^3 voxels of level l below it. Only finite voxels inside the volume count.
-// Integers are rounded to nearest, ties to even; for labels, the voxel is the most frequent label (halving.h). Since 64
-// is 2^6, a chunk alone determines its voxels in the next six coarser levels. Voxels of levels 1 to 5 are gathered
+// Integers are rounded to nearest, ties to even. For labels, the most frequent label is taken instead (halving.h). As
+// 64 is 2^6, a chunk alone determines its voxels in the next six coarser levels. Voxels of levels 1 to 5 are collected
 // until 64 slices of a level are complete; higher levels are small and kept whole. So memory depends on the size of a
 // slice, not on the number of slices: about 43 bytes per voxel of a slice of 16 bits.
 //
-// For every brick of 32^3 voxels of every level, the pass also finds the smallest and largest finite value of the
-// voxels of level 0 below the brick and below the voxels next to it.
+// For every brick of 32^3 voxels of every level, also finds the smallest and largest finite value of the voxels of
+// level 0 below the brick and below the voxels next to it.
 
 #include <array>
 #include <memory>
@@ -21,22 +21,22 @@
 
 namespace shvr {
 
-/// Voxels along each axis of a chunk, at every level.
+/// Side of a chunk in voxels, at every level.
 inline constexpr int64_t IMPORT_CHUNK = 64;
-/// A chunk determines its voxels in this many coarser levels.
+/// The number of coarser levels for which a single chunk determines its voxels.
 inline constexpr int IMPORT_REACH = 6;
 static_assert(IMPORT_CHUNK == int64_t{1} << IMPORT_REACH);
 
-/// Number of levels, such that a single brick of 32^3 voxels covers the coarsest level.
+/// Returns the number of levels, such that one brick of 32^3 voxels covers the coarsest level.
 int level_count(const Size3& size);
 
 class ImportPyramid {
 public:
     virtual ~ImportPyramid() = default;
 
-    /// Takes the chunk whose first voxel is at `origin`, with `extent` voxels inside the volume; rows and slices lie
+    /// Adds the chunk whose first voxel is at `origin`, with `extent` voxels inside the volume; rows and slices lie
     /// `row_bytes` and `slice_bytes` apart. Returns all its 64^3 voxels, with the fill value outside the volume, valid
-    /// until the next call with the same `worker`. Different workers may add different chunks at once.
+    /// until the next call with the same `worker`. Different workers may add different chunks at the same time.
     struct Chunk {
         Size3 origin{0};
         Size3 extent{0};
@@ -46,20 +46,20 @@ public:
     };
     virtual std::span<const std::byte> add(const Chunk& chunk, int worker) = 0;
 
-    /// Whether a layer of chunks of `level` (1 ... 5) is complete once `slices` slices of level 0 have been added.
-    /// Layers of higher levels are complete only at the end.
+    /// Whether `level` (1 ... 5) has a new complete layer of chunks once `slices` slices of level 0 are added. Layers
+    /// of higher levels are complete only at the end.
     bool completes_layer(int level, int64_t slices) const;
-    /// Computes the levels above the sixth, which need the whole volume. Call after the last chunk.
+    /// Computes the levels above the sixth, which depend on the whole volume. Call this after the last chunk.
     virtual void finish() = 0;
-    /// Returns the voxels of a chunk of a complete layer, in the form in which `add` returns them.
+    /// Returns the voxels of a chunk of a complete layer, laid out like the result of `add`.
     virtual std::span<const std::byte> gather(int level, const Size3& chunk, int worker) = 0;
-    /// Call once the layer of `level` has been written; the next layer reuses its memory.
+    /// Call this once the layer of `level` has been written. The next layer reuses its memory.
     virtual void clear_layer(int level) = 0;
 
     /// The elements of PROJECT/shvr/ranges-LEVEL.
     virtual std::vector<std::byte> ranges(int level) const = 0;
 
-    /// Call only between two layers of chunks of level 0.
+    /// Call this only between two layers of chunks of level 0.
     virtual void save(StateWriter& state) const = 0;
     virtual void load(StateReader& state) = 0;
 
@@ -74,7 +74,7 @@ private:
     int levels_;
 };
 
-/// A voxel, in as many bytes as its type has.
+/// A fill value, in the first bytes, as many as the voxel type has.
 using FillVoxel = std::array<std::byte, 8>;
 
 std::unique_ptr<ImportPyramid> make_import_pyramid(const Size3& size, VoxelType type, int workers,

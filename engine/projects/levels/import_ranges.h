@@ -1,5 +1,5 @@
 #pragma once
-// Finds the ranges of the bricks of a level, while its chunks stream through.
+// Finds the ranges of the bricks of a level while its chunks are processed.
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +26,7 @@ struct ImportRange {
     }
 };
 
-/// The range of one voxel, which is empty if the voxel is not finite.
+/// Returns the range of one voxel: empty if the voxel is not finite.
 template <class T>
 ImportRange<T> range_of_voxel(const FillVoxel& voxel)
 {
@@ -35,7 +35,7 @@ ImportRange<T> range_of_voxel(const FillVoxel& voxel)
     return std::isfinite(double(value)) ? ImportRange<T>{value, value} : ImportRange<T>{};
 }
 
-/// The part of a brick and of the voxels next to it that lies inside a cube.
+/// The intersection of a cube with a brick and the voxels next to the brick.
 template <class T>
 struct BrickPart {
     int64_t brick;  ///< the brick's number, x fastest
@@ -45,7 +45,7 @@ struct BrickPart {
 
 namespace ranges {
 
-/// The part of a cube, along one axis, inside a brick or the voxels next to it.
+/// The same intersection along one axis: from `begin` to `end`, in voxels of the cube.
 struct Segment {
     int64_t brick, begin, end;
 };
@@ -90,7 +90,7 @@ void add_columns(const ImportCube<T>& cube, const Segment& y, const Segment& z, 
 
 }  // namespace ranges
 
-/// The parts of bricks inside a cube; `bricks`: number of bricks of the cube's level along each axis.
+/// Returns the parts of all bricks that meet a cube. `bricks`: number of bricks of the cube's level along each axis.
 template <class T>
 std::vector<BrickPart<T>> brick_parts(const ImportCube<T>& cube, const Size3& origin, const Size3& bricks)
 {

@@ -13,9 +13,9 @@ namespace {
 
 constexpr char MAGIC[] = "SHVRIMP1";
 constexpr size_t MAGIC_BYTES = 8;
-constexpr size_t HEADER_BYTES = MAGIC_BYTES + 2 * sizeof(uint64_t);  ///< magic, the content's length and its hash
+constexpr size_t HEADER_BYTES = MAGIC_BYTES + 2 * sizeof(uint64_t);  ///< magic, length and hash of the content
 constexpr int64_t MAX_STATE_BYTES = int64_t{1} << 40;
-/// A block of Zstd takes at least four bytes, and decodes to at most 128 KiB.
+/// A block of Zstd has at least four bytes and decodes to at most 128 KiB, which limits the compression ratio.
 constexpr uint64_t MAX_OUT_OF_A_BYTE = uint64_t{32} << 10;
 
 }  // namespace
@@ -49,7 +49,7 @@ StateReader::StateReader(const std::filesystem::path& file) : file_(file)
     std::memcpy(header, content.data() + MAGIC_BYTES, sizeof(header));
     const std::byte* const frame = content.data() + HEADER_BYTES;
     const size_t frame_bytes = content.size() - HEADER_BYTES;
-    // Before memory is allocated, the length stated in the frame must equal the length stated in the header.
+    // Before memory is allocated, the length stated in the Zstd frame must equal that in the file's header.
     if (ZSTD_getFrameContentSize(frame, frame_bytes) != header[0] || header[0] > uint64_t{MAX_STATE_BYTES}) refuse();
     if (header[0] / MAX_OUT_OF_A_BYTE > frame_bytes) refuse();
     bytes_.resize(header[0]);

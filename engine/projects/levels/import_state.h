@@ -1,6 +1,6 @@
 #pragma once
-// The state that an import needs to resume after an interruption, in one file with one checksum: a header with the
-// checksum, then a zstd frame of byte strings in a fixed order, each preceded by its length. One thread.
+// The saved state from which an interrupted import resumes: a file with a header, which contains a checksum, and a zstd
+// frame of byte strings in a fixed order, each preceded by its length. One thread.
 
 #include <cstring>
 #include <filesystem>
@@ -22,7 +22,7 @@ public:
         put(std::as_bytes(std::span(elements)));
     }
 
-    /// Replaces the file atomically; when it returns, the content is on the disk.
+    /// Replaces the file atomically. When this returns, the content is on the disk.
     void write(const std::filesystem::path& file) const;
 
 private:
@@ -37,7 +37,7 @@ public:
     /// Returns the next piece; fails if there is none.
     std::span<const std::byte> take();
     std::string take_text();
-    /// Fills existing elements; fails if the file has a different number of elements.
+    /// Reads into existing elements. Fails if the file has a different number of elements.
     template <class T>
     void take_all(std::vector<T>& elements)
     {

@@ -1,6 +1,6 @@
 #pragma once
-// Ranges of the bricks of a level in which only some chunks are made. Stores only the ranges that differ from the range
-// of a brick in which nothing is stored.
+// Ranges of the bricks of a level of which only some chunks are made. Stores a range only if it differs from that of a
+// brick in which nothing is stored.
 
 #include <algorithm>
 #include <cmath>
@@ -19,11 +19,11 @@ class SparseRanges {
 public:
     struct Brick {
         uint64_t number = 0;
-        int64_t voxels = 0;  ///< known voxels of the brick and next to it
+        int64_t voxels = 0;  ///< number of added voxels in the brick and next to it
         ImportRange<T> range{};
     };
 
-    /// `size`: size of the level. `rest`: the range of voxels in chunks that are not made.
+    /// `size`: size of the level. `rest`: the range of voxels of chunks that are not made.
     SparseRanges(const Size3& size, const ImportRange<T>& rest)
         : size_(size), counts_(size_of_level(size, 5)), rest_(rest)
     {}
@@ -34,7 +34,7 @@ public:
         const std::scoped_lock lock(mutex_);
         for (const BrickPart<T>& part : parts)
             bricks_.push_back({.number = uint64_t(part.brick), .voxels = part.voxels, .range = part.range});
-        // Merges once the number of bricks has doubled, so that sorting costs little and memory at most doubles.
+        // Merges once the number of entries has doubled: sorting then costs little, and memory at most doubles.
         if (bricks_.size() > merged_ + std::max(merged_, MIN_MERGED)) merge();
     }
 
