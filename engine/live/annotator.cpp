@@ -12,7 +12,7 @@ namespace shvr {
 
 namespace {
 
-/// Distance, in voxels, at which an offset still changes the picture: through samples, and through gradients.
+/// Distance, in voxels, up to which an offset changes the picture through interpolation and gradients.
 constexpr int64_t RAISED_REACH = 2;
 
 VoxelBox reach_of_raised(const VoxelBox& raised, const Size3& size)
@@ -200,8 +200,8 @@ void Annotator::extend_stroke(const glm::dvec3& voxel)
     Stroke& stroke = strokes_.back();
     const glm::dvec3 from = stroke.last.value_or(voxel);
     const std::vector<glm::dvec3> more = stroke_positions(std::array{from, voxel});
-    // A segment starts where the previous one ended. A dab is a segment from a point to itself: of its two equal
-    // positions, the second is kept.
+    // A segment's first position is the last position of the previous segment, so it is skipped. A dab is a segment
+    // from a point to itself, with two equal positions; the second one is kept.
     stroke.positions.insert(stroke.positions.end(), more.begin() + 1, more.end());
     stroke.last = voxel;
 }
@@ -245,7 +245,7 @@ std::optional<VoxelBox> Annotator::advance_first_stroke()
         if (!strokes_.empty()) strokes_.front().failed_tries = 0;
         return changed;
     } catch (const gpu::DeviceLost&) {
-        throw;  // the stroke continues once the device has been restarted
+        throw;  // the caller restarts the device, and then the stroke continues
     } catch (const gpu::MemoryError& error) {
         strokes_.front().query.drop();
         const bool is_of_budget = dynamic_cast<const gpu::BudgetError*>(&error) != nullptr;  // a budget does not change
@@ -253,7 +253,7 @@ std::optional<VoxelBox> Annotator::advance_first_stroke()
         if (!is_of_budget && ++strokes_.front().failed_tries < MAX_TRIES) throw;
         drop_first_stroke();
         fail(error.what(), CUT);
-    } catch (const Error& error) {  // a part that cannot be recorded is not painted
+    } catch (const Error& error) {  // a part of the stroke that cannot be recorded is not painted
         drop_first_stroke();
         fail(error.what(), CUT);
     }
@@ -272,7 +272,7 @@ std::optional<VoxelBox> Annotator::advance_stroke()
         if (frame.regions.empty())
             stroke.next = frame.end;
         else if (stroke.query.ask(stroke.brush, std::move(frame.regions), RegionQuery::Wait::no))
-            stroke.asked_to = frame.end;  // if false, nothing was submitted: the bricks are being loaded
+            stroke.asked_to = frame.end;  // otherwise nothing was submitted, as bricks are being loaded
     } else if (stroke.has_ended) {
         last_stroke_ = stroke.result;
         ++strokes_done_;
@@ -315,7 +315,7 @@ void Annotator::show(const Touched& touched, const std::optional<VoxelBox>& with
     try_to_show([&] { renderer_.scene().show(document(), touched, within); });
 }
 
-/// Shows a change that has already been made; the change stands even if showing it fails.
+/// Shows a change that has already been made. If showing the change fails, the change itself stays.
 template <class Update>
 void Annotator::try_to_show(const Update& update)
 {

@@ -7,8 +7,8 @@
 // The device decides which voxels a brush selects; the code that makes the records decides which of these voxels change
 // (painting.h).
 //
-// A script paints a whole stroke and waits. A user begins a stroke, extends it and ends it; parts of it are painted as
-// the device answers, all as one command, however many answers there are. One thread, the renderer's.
+// A script paints a whole stroke and waits. A user begins, extends and ends a stroke; its parts are painted as the
+// device answers. All parts form one command. Used only by the renderer's thread.
 
 #include <deque>
 #include <memory>
@@ -22,61 +22,61 @@
 
 namespace shvr {
 
-/// Returns `op` as it is painted in a session: an automatic offset is replaced by a number, and the session's locked
-/// groups are added. Everything that is painted or previewed for a user passes through here.
+/// Returns `op` as the session paints it: an automatic offset is replaced by a number, and the session's locked groups
+/// are added. Every paint operation and preview of a user passes through here.
 PaintOp in_session(PaintOp op, const Session& session);
 
 /// Returns the files in which a session stores its work.
 WorkFiles work_files(const Session& session, const VolumeInfo& volume);
-/// Likewise, with the lasting settings of an `OpenedSession`, except settings that `overridden` ("key=value") sets for
-/// this run only.
+/// Like work_files() above, with the persistent settings of an `OpenedSession`, except settings that `overridden`
+/// ("key=value") sets for this run only.
 WorkFiles work_files(const Session& session, const VolumeInfo& volume, const std::vector<std::string>& overridden);
-/// Adds the kept settings, for callers that apply Work::kept_settings() and pass changes on to Work::keep_settings.
+/// Adds the kept settings; for callers that apply Work::kept_settings() and report changes to Work::keep_settings.
 WorkFiles with_kept_settings(WorkFiles files, const Session& session, const std::vector<std::string>& overridden);
 
 class Annotator {
 public:
-    /// Number of retries after memory ran out; with the pauses of a user's window, they take about 5 s.
+    /// Maximum number of retries when memory runs out: about 5 s with the pauses of a user's window.
     static constexpr int MAX_TRIES = 20;
 
     /// Starts new work, without any paint. The volume must be loaded.
     explicit Annotator(Renderer& renderer);
-    /// Continues open work; another thread may have used it before. The caller must make the scene show it.
+    /// Continues open work, which another thread may have used before. The caller must make the scene show the work.
     Annotator(Renderer& renderer, std::unique_ptr<Work> work);
 
     /// For saving, file names and the trace's selection. To change annotations, use the functions below, which also
-    /// show the change on the device. If too little memory is left to show it, they do not fail: see `is_behind`.
+    /// show the change on the device. If memory is too short to show a change, they do not fail: see `is_behind`.
     Work& work() { return *work_; }
     const Work& work() const { return *work_; }
-    /// Releases the work for another annotator; after that, this annotator must not be used.
+    /// Releases the work to another annotator. This annotator must not be used afterwards.
     std::unique_ptr<Work> take_work() { return std::move(work_); }
     const Document& document() const { return work_->document(); }
     const History& history() const { return work_->history(); }
     Renderer& renderer() const { return renderer_; }
-    /// Revision number, incremented by every change of painted groups or offsets.
+    /// Revision number: incremented by every change of painted groups or offsets.
     uint64_t revision() const { return revision_; }
 
-    /// Like Work::open and Work::choose, but these also update the device.
+    /// Like Work::open and Work::choose, but also update the device.
     std::vector<Notice> open(const WorkFiles& files, const Work::Opening& opening = {});
     std::vector<Notice> choose(Belief belief);
 
-    /// Returns the voxels that `op` selects, whatever their group.
+    /// Returns the voxels that `op` selects, regardless of their group.
     VoxelSelection select(const PaintOp& op);
     /// Returns the exact preview: the voxels that paint(op) would change now. Paints nothing, but waits for the device;
     /// Previewer (engine/live/previewer.h) does not wait.
     PaintPreview preview(const PaintOp& op);
-    /// Likewise, but computed from `answers`, the device's answers for all regions of `op`.
+    /// The same, computed from `answers`: the device's answers for all regions of `op`.
     PaintPreview preview(const PaintOp& op, std::span<const RegionAnswer> answers) const;
-    /// Paints `op` as one command. Returns how many voxels changed their group plus how many changed their offset;
-    /// `last_stroke` has details. All regions of a stroke see the volume as it was before the stroke.
+    /// Paints `op` as one command. Returns the number of voxels whose group changed plus the number whose offset
+    /// changed; `last_stroke` has details. All regions of a stroke see the volume as it was before the stroke.
     int64_t paint(const PaintOp& op);
 
-    /// Begins an interactive stroke; ignores `brush.path`. Does not wait: `advance` paints. Later regions of a stroke
-    /// may see offsets that its earlier regions painted. The locks of `brush` apply until the stroke ends. Ended
+    /// Begins an interactive stroke; ignores `brush.path`. Does not wait, because `advance` paints. Later regions of
+    /// the stroke may see offsets painted by earlier ones. The locks of `brush` apply until the stroke ends. Earlier
     /// strokes that are not painted yet are painted first, in order, so the user need not wait for the device.
     void begin_stroke(const PaintOp& brush);
     void extend_stroke(const glm::dvec3& voxel);
-    /// Interrupts the stroke: nothing will be painted between its last position and its next one.
+    /// Interrupts the stroke: nothing is painted between its last position and its next one.
     void lift_stroke()
     {
         if (stroke_is_open()) strokes_.back().last.reset();
@@ -86,30 +86,30 @@ public:
     bool stroke_is_running() const { return !strokes_.empty(); }
     /// Whether an interactive stroke has begun but not ended.
     bool stroke_is_open() const { return !strokes_.empty() && !strokes_.back().has_ended; }
-    /// Ends all strokes at once: painted parts stay, unpainted parts are dropped.
+    /// Ends all strokes at once. Painted parts stay; unpainted parts are dropped.
     void drop_strokes();
-    /// Drops the queries in flight, after the device was restarted; `advance` submits them again.
+    /// Drops the queries in flight after a restart of the device; `advance` submits them again.
     void drop_queries();
-    /// Shows changes that could not be shown for lack of memory, paints a finished answer of the first stroke and
-    /// submits the next query. Returns the voxels that may look different. If the driver is out of memory, throws
-    /// MemoryError; the next calls retry, up to MAX_TRIES. If a stroke cannot continue (retries exhausted, a brush that
-    /// is too large, failure of bricks or of the journal), drops the rest of the stroke and throws another error whose
-    /// message says so.
+    /// Shows changes that earlier could not be shown for lack of memory, paints a finished answer of the first stroke
+    /// and submits the next query. Returns the voxels whose appearance may have changed. If the driver is out of
+    /// memory, throws MemoryError; the next calls retry, up to MAX_TRIES. If a stroke cannot continue (retries
+    /// exhausted, a brush that is too large, failure of bricks or of the journal), drops the rest of the stroke and
+    /// throws another error whose message says so.
     std::optional<VoxelBox> advance();
     /// Whether the picture lags behind the annotation because an update failed; `advance` retries the update.
     bool is_behind() const { return renderer_.scene().is_behind() && tries_to_show_ < MAX_TRIES; }
-    /// Retries the update at once; fails if it is not possible.
+    /// Retries the failed update at once; fails if the retry fails.
     void catch_up();
-    /// Number of interactive strokes that were painted to their end.
+    /// Number of interactive strokes that were painted completely.
     uint64_t strokes_done() const { return strokes_done_; }
-    /// The result of the last finished stroke, whether interactive or made by `paint`.
+    /// The result of the last finished stroke, interactive or made by `paint`.
     const StrokeResult& last_stroke() const { return last_stroke_; }
 
     /// Applies changes made by trace_edit.h as one command. Must not be called while a stroke is running. Returns the
     /// command, valid until the history changes; null if `changes` is empty.
     const Command* edit_trace(std::string label, std::vector<TraceChange> changes);
 
-    /// Applies changes as one command. Must not be called while a stroke is running. Returns null if there are none.
+    /// Applies changes as one command; returns null if there are none. Must not be called while a stroke is running.
     const Command* perform(std::string label, std::vector<Change> changes);
 
     /// Like Work::change_settings; must not be called while a stroke is running. The caller updates the session.
@@ -130,12 +130,12 @@ private:
     struct Stroke {
         PaintOp brush;
         RegionQuery query;
-        std::vector<glm::dvec3> positions{};  ///< positions of the stroke; regions from `next` on are not painted yet
+        std::vector<glm::dvec3> positions{};  ///< positions of the stroke; those before `next` are painted
         size_t next = 0;
-        size_t asked_to = 0;               ///< index of the first position after those in the query
+        size_t asked_to = 0;               ///< end of the positions covered by the query in flight
         std::optional<glm::dvec3> last{};  ///< position up to which the stroke has been extended
         bool has_ended = false;
-        bool is_recorded = false;  ///< whether the history's last command is this stroke's
+        bool is_recorded = false;  ///< whether the last command of the history is this stroke
         StrokeTally tally{brush};
         StrokeResult result = tally.result();  ///< the painted part so far
         int failed_tries = 0;                  ///< consecutive
@@ -161,7 +161,7 @@ private:
     void try_to_show(const Update& update);
 
     Renderer& renderer_;
-    std::deque<Stroke> strokes_;  ///< in order: the first is being painted; only the last may be open
+    std::deque<Stroke> strokes_;  ///< in order: the first stroke is being painted; only the last may be open
     uint64_t strokes_done_ = 0;
     StrokeResult last_stroke_;
     uint64_t revision_ = 0;

@@ -1,6 +1,6 @@
 #pragma once
-// Intensities of single voxels on the host, with the offsets of density painting added, for a probe. Any thread, as
-// long as nothing changes the offsets.
+// Intensities of single voxels near a probe, read on the host, including the offsets of density painting. Any thread
+// may call this while nothing changes the offsets.
 
 #include "engine/annotation/density.h"
 #include "engine/annotation/trace/local_radius.h"
@@ -8,7 +8,7 @@
 
 namespace shvr {
 
-/// Reads the voxels of a box inside the volume. Fails if they cannot be read.
+/// Reads the voxels of a box inside the volume. Fails if the voxels cannot be read.
 DensityBox densities_in(const VolumeSource& source, const DensityField& offsets, const VoxelBox& box);
 
 }  // namespace shvr

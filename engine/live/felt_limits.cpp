@@ -13,7 +13,7 @@ namespace {
 
 constexpr double INF = std::numeric_limits<double>::infinity();
 
-/// Adds an interval; joins it to the last interval if no floating-point number lies between the two.
+/// Adds an interval. Joins it to the last one if no floating-point number lies between the two intervals.
 void append(double lower, double upper, IntensityIntervals& intervals)
 {
     if (!intervals.empty() && lower <= std::nextafter(intervals.back().second, INF))
@@ -103,7 +103,7 @@ IntensityIntervals shown_intensities(const TransferFunction& function, const Int
         const double to = points[i + 1].intensity, first = std::nextafter(from, INF), last = std::nextafter(to, -INF);
         if ((points[i].opacity > 0.0 || points[i + 1].opacity > 0.0) && first <= last) append(first, last, shown);
     }
-    // Intensities outside the window are shown like the nearer end of the window.
+    // Intensities outside the window are shown like the window's nearer end.
     IntensityIntervals clamped;
     if (is_shown(window.lower)) append(-INF, window.lower, clamped);
     for (const auto& [lower, upper] : shown)

@@ -4,7 +4,7 @@
 // tick; limits that hide nothing cost nothing. Plain values; any thread.
 //
 // A voxel is seen if its centre lies between the cutting and clip planes and its opacity is above 0: its group's
-// opacity, or the transfer function's if it is unpainted. Slices, which ignore planes and opacity, do not count.
+// opacity, or the transfer function's if it is unpainted. Slices ignore planes and opacity, so they do not count.
 
 #include <bitset>
 #include <optional>
@@ -20,7 +20,7 @@ namespace shvr {
 class Mask;
 struct RelevanceBits;
 
-/// Closed intervals of intensities, ascending, which neither overlap nor touch.
+/// Closed intervals of intensities, in ascending order, that neither overlap nor touch.
 using IntensityIntervals = std::vector<std::pair<double, double>>;
 bool contains(const IntensityIntervals& intervals, double intensity);
 
@@ -33,28 +33,28 @@ struct DepthLimits {
 
 struct FeltLimits {
     std::bitset<256> groups = std::bitset<256>().set();  ///< 0 stands for unpainted voxels
-    std::optional<IntensityIntervals> unpainted{};       ///< intensities at which unpainted voxels are felt; null: all
+    std::optional<IntensityIntervals> unpainted{};       ///< intensities at which unpainted voxels are felt; null: any
     CutBox cut{};
     std::optional<DepthLimits> depths{};
     bool operator==(const FeltLimits&) const = default;
     bool need_mask() const { return !groups.all() || unpainted; }
 };
 
-/// Returns the groups that are drawn: visible and, if `opaque`, not fully transparent. [0], unpainted, is always set.
+/// Returns the drawn groups: visible and, if `opaque`, not fully transparent. Bit 0 (unpainted) is always set.
 std::bitset<256> drawn_groups(const Groups& groups, bool opaque);
 
-/// Returns limits that allow only `groups` to be felt; an empty list allows everything.
+/// Returns limits that allow only `groups` to be felt, or every group if the list is empty.
 FeltLimits limits_of_groups(const std::vector<uint8_t>& groups);
-/// Narrows `limits` to the voxels that a picture shows. Intensities outside the window are shown like the nearer end of
-/// the window; intensities below the threshold do not matter.
+/// Narrows `limits` to the voxels that a picture shows. Intensities outside the window are shown like the window's
+/// nearer end; intensities below the threshold do not matter.
 void limit_to_seen(const Look& look, const Camera& camera, const VolumeInfo& volume, const IntensityWindow& window,
                    double threshold, FeltLimits& limits);
 
-/// Returns the intensities of opacity above 0. Those outside the window are shown like the nearer end of the window.
+/// Returns the intensities with opacity above 0. Intensities outside the window are shown like its nearer end.
 IntensityIntervals shown_intensities(const TransferFunction& function, const IntensityWindow& window);
 
-/// Clears the bits of voxels that are not felt, except of voxels excluded by intensity alone (relevance_on_host clears
-/// those). `spacing`: voxel spacing of level 0. `mask`: may be null if it is not needed, or if nothing is painted.
+/// Clears the bits of voxels that cannot be felt, except voxels excluded by intensity alone (relevance_on_host clears
+/// those). `spacing`: voxel spacing of level 0. `mask`: may be null if no limit needs it, or if nothing is painted.
 void apply_limits(const FeltLimits& limits, const glm::dvec3& spacing, const Mask* mask, RelevanceBits& bits);
 
 }  // namespace shvr

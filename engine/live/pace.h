@@ -1,9 +1,9 @@
 #pragma once
 // Estimates the device time of a unit of work from past graphs, and thus how many units fit into the next graph.
 //
-// Some pixels cost twenty times more than others, and a graph that is too short does less harm than one that is too
-// long. So the estimate rises at once: it is the maximum of the last eight graphs. After eight graphs, slow
-// measurements (as during a clock's ramp-up) and wrong measurements are forgotten. One thread.
+// Some pixels cost twenty times as much as others, and a graph that is too short does less harm than a graph that is
+// too long. So the estimate is the maximum of the last eight graphs, and rises at once. After eight more graphs, slow
+// measurements (as while a device's clock ramps up) and wrong ones no longer count. Used by one thread.
 
 #include <algorithm>
 #include <array>

@@ -31,7 +31,7 @@ void Previewer::want(const std::optional<PaintOp>& brush)
 {
     if (wanted_ == brush) return;
     wanted_ = brush;
-    // Checked after the copy: a check before it makes g++ 14 assume that the copy reads beyond the end of the path.
+    // Checked after the copy: if checked before, g++ 14 wrongly warns that the copy reads beyond the end of the path.
     SHVR_CHECK(!wanted_ || wanted_->path.size() == 1);
     if (!wanted_) shown_.reset();
 }

@@ -1,7 +1,7 @@
 #pragma once
 // Measures the relevant share of the probe's ball: the fraction of its voxels at or above a threshold, after offsets
-// are added. The device counts the voxels, as it does for a filling brush. One query is in flight at a time and nothing
-// waits; nothing is submitted while the ball and the densities stay the same. One thread, the annotator's.
+// are added. The device counts the voxels, as it does for a filling brush. One query is in flight at a time and no call
+// waits. Nothing is submitted while the ball and the densities stay the same. The annotator's thread only.
 
 #include <optional>
 
@@ -13,18 +13,18 @@ class ProbeMeter {
 public:
     explicit ProbeMeter(Annotator& annotator) : annotator_(annotator), query_(annotator.renderer()) {}
 
-    /// The ball: its centre in voxels, and its radius in voxels along x. Null: no measurement is wanted.
+    /// The ball to measure: its centre in voxels, and its radius in voxels along x. Null: no measurement.
     struct Ball {
         glm::dvec3 voxel{0.0};
         double radius_voxels = 1.0;
         double threshold = 0.0;
         bool operator==(const Ball&) const = default;
     };
-    /// Sets the ball. Call it in every frame: while nothing has changed, it only compares.
+    /// Sets the ball. Call it in every frame: if nothing has changed, it only compares.
     void want(const std::optional<Ball>& ball) { wanted_ = ball; }
     /// Collects a finished answer and submits the next query. Fails if the ball is larger than a brush may be.
     void advance();
-    /// Drops a query in flight; `advance` submits it again.
+    /// Drops a query in flight; `advance` then submits it again.
     void drop()
     {
         query_.drop();
@@ -34,7 +34,7 @@ public:
     /// the first answer. Lags behind a moving ball.
     std::optional<double> share() const { return wanted_ ? share_ : std::nullopt; }
     bool is_current() const;
-    /// Whether a query is in flight. False while its bricks are being loaded; it is submitted again as they arrive.
+    /// Whether a query is in flight. No query is in flight while its bricks are loaded; it is then submitted again.
     bool is_asking() const { return query_.is_asking(); }
 
 private:

@@ -11,10 +11,10 @@ namespace shvr {
 
 namespace {
 
-/// Limits of one frame: total bytes of its regions' labels, and number of regions, as each has buffers of its own.
+/// Limits of one frame: total bytes of the regions' labels, and number of regions, since each has its own buffers.
 constexpr uint64_t LABEL_BYTES = uint64_t(32) << 20;
 constexpr size_t MAX_REGIONS = 64;
-/// Maximum number of bricks for all regions of a frame together; only a single region may need more.
+/// Maximum number of bricks for all regions of a frame together; exceeded only by a single region.
 constexpr uint32_t MAX_BRICKS = 48;
 
 gpu::RegionParams region_params(const RegionAt& asked, const PaintOp& op, uint32_t threshold_code)

@@ -3,10 +3,10 @@
 //
 //   positions -> frame_of_regions (CPU) -> RegionQuery::ask -> passes of the brush (device) -> RegionQuery::answer
 //
-// A voxel's exact value is compared with the threshold. Where several values share a code, the host compares them
-// (Scene::threshold_bricks); then the device only connects voxels, and a filling brush does not need the device.
+// The exact value of each voxel is compared with the threshold. In volumes where several values share a code, the host
+// compares (Scene::threshold_bricks); the device then only connects voxels, and a filling brush needs no device.
 //
-// One query in flight per object. One thread, the renderer's.
+// Each instance has at most one query in flight. Used only by the renderer's thread.
 
 #include <optional>
 #include <span>
@@ -26,9 +26,9 @@ struct RegionAt {
 /// The regions that fit in one frame, in the order of their positions.
 struct FrameOfRegions {
     std::vector<RegionAt> regions;  ///< only regions that contain a voxel of the volume
-    size_t end = 0;                 ///< index of the first position that is not covered yet
+    size_t end = 0;                 ///< index of the first position not covered yet
 };
-/// Returns the regions of `op` around `positions`, from index `first` on, that fit in one frame.
+/// Returns the regions of `op` around `positions`, from index `first` on, as far as they fit in one frame.
 FrameOfRegions frame_of_regions(const PaintOp& op, std::span<const glm::dvec3> positions, size_t first,
                                 const VolumeInfo& volume);
 
@@ -45,14 +45,14 @@ public:
     /// `name`: the name of the read-backs in profiles.
     explicit RegionQuery(Renderer& renderer, const char* name = "") : renderer_(renderer), name_(name) {}
 
-    /// Asks which voxels of `regions` (at least one) `op` selects, given its brush, threshold and connectivity. Drops
-    /// an earlier query. If bricks of the regions are not loaded yet, then depending on `wait` it reads them, or
-    /// submits nothing and returns false.
+    /// Asks which voxels of `regions` (at least one) are selected by the brush, threshold and connectivity of `op`.
+    /// Drops an earlier query. If bricks of the regions are not loaded yet: depending on `wait`, reads them, or submits
+    /// nothing and returns false.
     bool ask(const PaintOp& op, std::vector<RegionAt> regions, Wait wait);
     bool is_asking() const { return frame_ || !known_.empty(); }
     /// Whether `answer` would return without waiting.
     bool is_answered() const { return !known_.empty() || (frame_ && frame_.done()); }
-    /// Returns one answer per region, in order. Waits if necessary; afterwards no query is in flight.
+    /// Waits if necessary. Returns one answer per region, in order. Afterwards no query is in flight.
     std::vector<RegionAnswer> answer();
     /// Drops the query in flight, if any.
     void drop()
@@ -60,7 +60,7 @@ public:
         frame_ = {};
         known_.clear();
     }
-    /// Device time of the last answer; 0 where the device has no timestamps.
+    /// Device time of the last answer; 0 if the device has no timestamps.
     double gpu_ms() const { return gpu_ms_; }
 
 private:

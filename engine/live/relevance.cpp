@@ -28,7 +28,7 @@ void Relevance::ask(const VoxelBox& box, double threshold, uint64_t now_ns)
 {
     const PaintOp fill{.brush = Brush::fill, .threshold = threshold};
     const glm::dvec3 middle = 0.5 * glm::dvec3(box.lower + box.upper);
-    // While bricks are being loaded, the bits that the host computes are used instead (relevance_mirror.h).
+    // If bricks are still being loaded, nothing is asked; the host computes the bits (relevance_mirror.h).
     if (query_.ask(fill, {{region_of(box), middle}}, RegionQuery::Wait::no)) asked_ns_ = now_ns;
 }
 

@@ -23,7 +23,7 @@ bool RelevancePlace::covers(const glm::dvec3& centre, double radius) const
     const glm::dvec3 lower = (centre - radius) / spacing, upper = (centre + radius) / spacing;
     for (int axis = 0; axis < 3; ++axis) {
         if (!std::isfinite(lower[axis]) || !std::isfinite(upper[axis])) return false;
-        // A ball that is outside the volume along any axis contains no voxels, so its relevance is known without bits.
+        // A ball entirely outside the volume along an axis contains no voxels, so its relevance needs no bits.
         if (upper[axis] <= 0.0 || lower[axis] >= double(level_size[axis])) return true;
     }
     const glm::dvec3 least = glm::max(lower, glm::dvec3(0.0)), most = glm::min(upper, glm::dvec3(level_size));
@@ -33,9 +33,9 @@ bool RelevancePlace::covers(const glm::dvec3& centre, double radius) const
 
 namespace {
 
-constexpr double ROUNDING = 1.0;  ///< in voxels, because a cube's corner is rounded to a whole voxel
+constexpr double ROUNDING = 1.0;  ///< in voxels; a cube's corner is rounded to a whole voxel
 
-/// Returns the side of the cube, in voxels, for a ball that will move by `travel` before the cube arrives.
+/// Returns the cube's side, in voxels, for a ball that moves by `travel` before the cube arrives.
 int64_t side_for(double radius, double travel)
 {
     constexpr double SMALL = 24.0;
@@ -70,8 +70,8 @@ RelevancePlace relevance_place(const VolumeSource& source, const RegionWish& wis
 
 namespace {
 
-/// Returns whether at least half of the painted voxels in a box, and at least one, can be felt. Unpainted voxels count
-/// only if group 0 is felt.
+/// Returns whether at least half of a box's painted voxels, and at least one, can be felt. Unpainted voxels count only
+/// if group 0 can be felt.
 bool is_mostly_felt(const Mask& mask, const std::bitset<256>& groups, const VoxelBox& box)
 {
     int64_t felt = 0, others = 0;
@@ -137,8 +137,8 @@ bool is_mostly_painted(const Mask& mask, const VoxelBox& box)
     return painted > 0 && 2 * painted >= voxels;
 }
 
-/// Calls `visit(voxel in the box, intensity)` for each voxel at or above the threshold, and sets the voxel's bit if
-/// `visit` returns true.
+/// Calls `visit(voxel in the box, intensity)` for each voxel at or above the threshold. Sets the voxel's bit if `visit`
+/// returns true.
 template <class Visit>
 RelevanceBits bits_where(const VolumeSource& source, int level, const VoxelBox& box, double threshold,
                          const Visit& visit)

@@ -1,6 +1,6 @@
 #pragma once
-// The relevance pass on the host, for replay without a device and for when the device is late. It computes the bits
-// from the file's own voxels; they equal the bits of a query (region_query.h). Any thread.
+// The relevance pass on the host, used by replay without a device and when the device is late. Computes the bits from
+// the file's own voxels; the bits equal those of a query (region_query.h). Any thread.
 
 #include <bitset>
 
@@ -16,20 +16,20 @@ namespace shvr {
 /// that it stays as large as possible. Fails if the point is not finite.
 VoxelBox relevance_cube(const glm::dvec3& voxel, const Size3& volume_size, int64_t side);
 
-/// Returns the cube to query for a ball, shifted ahead in the direction of motion. Fails if the point is not finite.
+/// Returns the cube to query for a ball, shifted ahead along its motion. Fails if the point is not finite.
 RelevancePlace relevance_place(const VolumeSource& source, const RegionWish& wish);
 
-/// Finds voxels at or above the threshold in a box of a level. `source` must already include density offsets.
+/// Finds the voxels at or above the threshold in a box of a level. `source` must include the density offsets.
 RelevanceBits relevance_on_host(const VolumeSource& source, int level, const VoxelBox& box, double threshold);
-/// Likewise, but excludes unpainted voxels whose intensities are not felt; apply_limits applies all other limits. A
-/// voxel of a coarser level is painted if at least half of the voxels in it are. `mask`: null if nothing is painted.
+/// The same, but excludes unpainted voxels whose intensities cannot be felt; apply_limits applies all other limits. A
+/// voxel of a coarser level is painted if at least half of its voxels are. `mask`: null if nothing is painted.
 RelevanceBits relevance_on_host(const VolumeSource& source, int level, const VoxelBox& box, double threshold,
                                 const FeltLimits& limits, const Mask* mask);
 
-/// Clears the bits of voxels outside these groups. For a voxel of a coarser level, the painted voxels that it covers
-/// decide: its bit stays if at least half of them, and at least one, are in these groups. Unpainted voxels count only
-/// if group 0 is included. So a completely painted object feels the same with or without the limit, on any level.
-/// `mask` must cover the volume.
+/// Clears the bits of voxels outside these groups. The bit of a coarser level's voxel stays if at least half of the
+/// painted voxels that it covers, and at least one, are in these groups. Unpainted voxels count only if group 0 is
+/// included. So a completely painted object feels the same with or without the limit, on any level. `mask` must cover
+/// the volume.
 void limit_to_groups(const Mask& mask, const std::bitset<256>& groups, RelevanceBits& bits);
 
 }  // namespace shvr

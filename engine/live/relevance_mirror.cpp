@@ -143,7 +143,7 @@ void RelevanceMirror::take_offer()
         const std::scoped_lock lock(mutex_);
         offered.swap(offered_);
     }
-    // Accepts only the awaited answer: meanwhile the host may have answered, or the user's choice may have changed.
+    // Accepts only the awaited answer: the host may have answered first, or the user's choice may have changed.
     if (!offered || waiting_for_ != offered->wanted || offered->bits.box != offered->wanted.place.box) return;
     if (offered->wanted.settings == now_->settings && offered->wanted.voxels == now_->voxels) {
         hold(offered->wanted, std::move(offered->bits), false);
@@ -175,7 +175,7 @@ void RelevanceMirror::turn(uint64_t now_ns)
         waiting_for_.reset();
         set_wanted({});
     } else {
-        // The request is kept as long as the requested cube still suffices.
+        // Keeps the pending request as long as its cube still suffices.
         const bool still_does = waiting_for_ && waiting_for_->threshold == best.threshold &&
                                 waiting_for_->settings == best.settings && waiting_for_->voxels == best.voxels &&
                                 waiting_for_->place.covers(wish.point + wish.travel(), wish.radius);
@@ -190,7 +190,7 @@ void RelevanceMirror::turn(uint64_t now_ns)
             return declined_ == waiting_for_;
         }();
         const bool may_try = failed_ns_ == 0 || now_ns - failed_ns_ >= TROUBLE_NS;
-        // The device gets more time while the cube of the current bits still leaves enough margin around the ball.
+        // The device gets more time as long as the held cube leaves enough margin around the ball.
         const bool is_urgent = !suits || !held_.place.covers(wish.point + wish.travel(), wish.radius);
         const uint64_t patience_ns = is_urgent ? DEVICE_NS : 4 * DEVICE_NS;
         if (may_try && (!asks_device || is_declined || now_ns - waiting_since_ns_ >= patience_ns))
@@ -213,7 +213,7 @@ void RelevanceMirror::make_on_host(const Wanted& wanted, uint64_t now_ns)
              true);
         failed_ns_ = 0;
     } catch (const std::exception& failure) {
-        trouble = failure.what();  // the force fades out, as it does when the device does not answer
+        trouble = failure.what();  // the force fades out, as when the device does not answer
         failed_ns_ = now_ns;
     }
     const std::scoped_lock lock(mutex_);

@@ -67,8 +67,8 @@ void Screen::drop()
 
 void Screen::show_probe(const ProbeLook& probe)
 {
-    // In slices, the probe affects only the brush's preview. Its motions below a twentieth of a voxel are ignored: less
-    // than a pixel in any slice that shows the whole volume.
+    // In slices, the probe affects only the brush's preview. Motions below a twentieth of a voxel are ignored: they are
+    // less than a pixel in any slice that shows the whole volume.
     constexpr double STIR_VOXELS = 0.05;
     const glm::dvec3 voxel = probe.center / renderer_.scene().info().spacing;
     const bool follows = view_.arrangement == Arrangement::slices && !parts_.empty();
@@ -78,7 +78,7 @@ void Screen::show_probe(const ProbeLook& probe)
                                                                                     : std::optional(probe));
 }
 
-/// Takes the scene's changes. Arriving bricks were requested by one pane; other panes draw them in their own turns.
+/// Takes the scene's changes. The current pane requested arriving bricks; other panes draw them in their own turns.
 void Screen::take_changed()
 {
     renderer_.scene().advance();
@@ -107,7 +107,7 @@ bool Screen::is_loading() const
     return renderer_.volume().state() == DeviceVolume::State::loading;
 }
 
-/// Lets another pane load bricks; the volume loads bricks for one pane at a time. Interrupted panes are redrawn later.
+/// Lets another pane load bricks, since the volume loads for one pane at a time. Interrupted panes redraw later.
 void Screen::give_turn(size_t part)
 {
     if (part == turn_) return;
@@ -136,7 +136,7 @@ void Screen::submit_ahead(double ahead_ms)
     });
     is_held_ = is_held_ && unsketched == parts_.size();
     if (next == parts_.size() || is_held_) return;
-    // Only one view draws at a time, so that little is in flight in total.
+    // Only one view draws at a time, so that the total work in flight stays small.
     for (size_t part = 0; part < parts_.size(); ++part)
         if (part != next && !parts_[part].view->is_idle()) return;
     give_turn(next);
@@ -162,7 +162,7 @@ std::vector<Stroke> Screen::strokes(const Part& part, const ProbeLook& probe, co
 {
     if (!part.view->shown_camera() || !shows_anything()) return {};
     Pane shown = part.pane;
-    shown.shot.camera = *part.view->shown_camera();  // strokes must match the shown picture, which may lag behind
+    shown.shot.camera = *part.view->shown_camera();  // strokes must match the shown picture, which may be older
     const PixelBox& box = parts_[0].pane.box;
     return strokes_of(shown,
                       {.main = camera_,

@@ -2,8 +2,8 @@
 // The interactive picture: a list of panes, each with a View. The panes take turns in using the device.
 //
 // Sketches come first, pane by pane, so that the whole screen follows the user; then the panes are drawn sharp, in
-// order. Panes share the volume, the paint and the ambient occlusion. One thread, the renderer's. A call waits for the
-// device only if its comment says so.
+// order. Panes share the volume, the paint and the ambient occlusion. Used only by the renderer's thread. A call waits
+// for the device only if its comment says so.
 
 #include <memory>
 
@@ -17,26 +17,26 @@ class Screen {
 public:
     Screen(Renderer& renderer, const View::Options& options) : renderer_(renderer), options_(options) {}
 
-    /// Sets the displayed content and redraws everything. To be called only if something changed.
+    /// Sets the displayed content and redraws everything. Call it only if something has changed.
     void look(const Session& session, const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& probe_voxel);
-    /// Moves the camera or the probe in the same session; panes that this does not change are not redrawn.
+    /// Moves the camera or the probe in the same session; redraws only the panes that change.
     void look_from(const Camera& camera, const glm::dvec3& probe_voxel);
     /// Sets the probe; slices follow it.
     void show_probe(const ProbeLook& probe);
     void update_occlusion();
 
     void advance();
-    /// Submits due work for `ahead_ms` more of device time, so that the device is not idle while this thread waits that
-    /// long for something else.
+    /// Submits due work for another `ahead_ms` of device time, so that the device stays busy while this thread waits
+    /// that long for something else.
     void submit_ahead(double ahead_ms);
-    /// While held, up-to-date panes are not made sharper: they would request bricks of their own, in place of the
-    /// bricks that another picture has requested and waits for. The hold ends when a pane has to follow the user.
+    /// While held, up-to-date panes are not made sharper, since they would request bricks of their own and displace
+    /// bricks that another picture waits for. The hold ends when a pane has to follow the user.
     void hold(bool is_held) { is_held_ = is_held; }
     bool is_held() const { return is_held_; }
     void wait();
-    /// Frees all panes and their device memory; look() makes new panes.
+    /// Frees all panes and their device memory; look() creates new panes.
     void clear();
-    /// Like clear(), for a device that was lost: does not wait.
+    /// Like clear(), for a lost device: does not wait.
     void drop();
     bool complete() const;
 
@@ -46,13 +46,13 @@ public:
     };
     /// The panes; the first shows the camera's view.
     const std::vector<Part>& parts() const { return parts_; }
-    /// Returns the lines over a pane, in its pixels. `shows_cut_box`: draws the cut box even if the session hides it.
+    /// Returns the lines over a pane, in pane pixels. `shows_cut_box`: draws the cut box even if the session hides it.
     std::vector<Stroke> strokes(const Part& part, const ProbeLook& probe, const TraceMarks& marks = {},
                                 bool shows_cut_box = false) const;
-    /// Whether the first pane has something to show.
+    /// Whether the first pane has a picture to show.
     bool shows_anything() const { return !parts_.empty() && parts_[0].view->shown_camera() != nullptr; }
 
-    /// Returns the picture as shown, with the lines over maps and slices, but without the probe's lines. Waits for the
+    /// Returns the picture as shown, including the lines over maps and slices but not the probe's lines. Waits for the
     /// device.
     Image8 read_back();
 
@@ -80,7 +80,7 @@ private:
     glm::uvec2 pixels_{0};
     glm::dvec3 probe_voxel_{0.0};
     std::vector<Part> parts_;
-    size_t turn_ = 0;  ///< index of the pane whose bricks are being loaded
+    size_t turn_ = 0;  ///< index of the pane for which bricks are being loaded
     bool is_held_ = false;
     uint64_t retired_submissions_ = 0, retired_revisions_ = 0;  ///< submissions and revisions of removed panes
 };

@@ -19,8 +19,8 @@ inline constexpr size_t MAX_MARKS = 2000;
 inline constexpr glm::dvec3 SELECTED_COLOR{1.0, 0.83, 0.02};  ///< yellow, linear light
 inline constexpr glm::dvec3 NEARBY_COLOR{0.45, 0.05, 0.9};    ///< purple
 inline constexpr glm::dvec3 LINKED_COLOR{0.35, 0.26, 0.0};    ///< a darker yellow
-/// `moved_by`: how far the selection has been dragged. `shown_links`: number of internodes around the selected node,
-/// nearest first, that are drawn as lines too, since the surface around them would hide their centre lines.
+/// `moved_by`: how far the selection has been dragged. `shown_links`: number of internodes nearest to the selected node
+/// that are also drawn as lines, because the surfaces hide their centre lines.
 TraceMarks trace_marks(const TraceGraph& trace, std::optional<uint32_t> nearby, double min_radius,
                        const std::optional<glm::dvec3>& moved_by = {}, size_t shown_links = 0);
 

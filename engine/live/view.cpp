@@ -25,7 +25,7 @@ glm::uvec2 divided(const glm::uvec2& pixels, uint32_t scale)
     return (pixels + scale - 1u) / scale;
 }
 
-/// Rounds width and height up to powers of two, so that images that grow are seldom re-created.
+/// Rounds width and height up to powers of two, so that growing images are seldom re-created.
 glm::uvec2 roomy(const glm::uvec2& pixels)
 {
     return {std::bit_ceil(pixels.x), std::bit_ceil(pixels.y)};
@@ -58,7 +58,7 @@ void View::bricks_arrived(const VoxelBox& voxels)
     if (shown_sight_) mark_voxels(voxels, false);
 }
 
-/// Notes that light changed. The patch over the probe is redrawn once all occlusion is renewed (submit_occlusion).
+/// Notes that light changed. The patch over the probe is redrawn after all occlusion is updated (submit_occlusion).
 void View::light_changed(const VoxelBox& voxels)
 {
     occlusion_was_renewed_ = true;
@@ -66,10 +66,10 @@ void View::light_changed(const VoxelBox& voxels)
     if (shown_sight_) mark_voxels(voxels);
 }
 
-/// Returns the pixels that may show the voxels, as seen by the camera or by either camera of an anaglyph.
+/// Returns the pixels that may show the voxels, seen by the camera or by both cameras of an anaglyph.
 PixelBox View::pixels_of(const Sight& sight, const VoxelBox& voxels) const
 {
-    // The paint of a voxel fills only the voxel's own cube, so nothing beyond the cube changes.
+    // A voxel's paint fills only the voxel's own cube, so pixels beyond the cube stay the same.
     const glm::dvec3& spacing = scene().info().spacing;
     const glm::dvec3 lower = glm::dvec3(voxels.lower) * spacing, upper = glm::dvec3(voxels.upper) * spacing;
     const PixelBox one = pixels_of_box(sight.shot.camera, sight.pixels, lower, upper);
@@ -121,7 +121,7 @@ void View::reserve(gpu::Storage& image, const std::string& name, Format format, 
     }
 }
 
-/// Resets the view: it shows nothing, has no work in progress and uses no memory; the next picture starts from scratch.
+/// Resets the view: nothing is shown or in progress, no memory is used, and the next picture starts from scratch.
 void View::forget()
 {
     for (const Running& running : running_) running.submission.wait();
@@ -166,7 +166,7 @@ void View::submit_sketches(double ahead_ms)
     }
 }
 
-/// Submits the next work. If memory is short, frees ambient occlusion, and leaves the work to the next frame.
+/// Submits the next work. If memory is short, frees ambient occlusion and defers the work to the next frame.
 bool View::submit_or_give_way(bool sketches_alone)
 {
     try {
@@ -188,7 +188,7 @@ bool View::is_listed(const Sight& sight)
                      {.pixels = sight.pixels, .always_shown = voxels_of_shell(probe_, scene().info())});
 }
 
-/// Returns the requested sight, or a recently requested sight, once its bricks are listed; null until then.
+/// Returns the requested sight, or a recent one, once the sight's bricks are listed; null until then.
 View::SightRef View::listed_sight()
 {
     if (!coming_sight_) coming_sight_ = sight_;
@@ -210,7 +210,7 @@ bool View::submit_next(bool sketches_alone)
 {
     if (!sight_) return false;
     if (is_drawing_finer_sketch() && (sight_ != shown_sight_ || patch_is_due())) {
-        if (base_.running > 0) return false;  // try again later: the sketch's image is still being drawn
+        if (base_.running > 0) return false;  // the sketch's image is still in use, so the caller tries again later
         drop_finer_sketch();
     }
     if (submit_sketch(base_, Purpose::base) || submit_sketch(patch_, Purpose::patch)) return true;
@@ -224,7 +224,7 @@ bool View::submit_next(bool sketches_alone)
         pass_times_.clear();
         changed_during_base_.clear();
         start(base_, sight, std::nullopt, options_.motion_ms);
-        if (probe_) start(patch_, sight, probe_, options_.probe_ms);  // shown together with the sketch of the picture
+        if (probe_) start(patch_, sight, probe_, options_.probe_ms);  // shown at the same time as the picture's sketch
         patch_is_dirty_ = false;
         return submit_next(sketches_alone);
     }
@@ -236,12 +236,12 @@ bool View::submit_next(bool sketches_alone)
     }
     if (sketches_alone) return false;
     if (submit_occlusion()) return true;
-    if (scene().has_changed()) return false;  // changes must be collected first, so that no tile is drawn twice
+    if (scene().has_changed()) return false;  // the changes must be collected first, or tiles are drawn twice
     if (patch_is_due()) return submit_next(sketches_alone);
     if (submit_finer_sketch()) return submit_next(sketches_alone);
     if (submit_tiles()) return true;
     if (std::ranges::any_of(tiles_, [this](const Tile& tile) { return may_draw(tile); }))
-        return false;  // the bricks of these tiles are being listed
+        return false;  // the bricks that these tiles need are being listed
     if (running_.empty() && patch_.shown.share < 1.0 && !patch_.shown.part.empty()) {
         start(patch_, sight_, probe_, std::numeric_limits<double>::infinity());  // nothing moves: draws the patch sharp
         return submit_next(sketches_alone);
@@ -269,7 +269,7 @@ Resource View::draw(FrameGraph& graph, const PicturePart& part, Import light, Ru
 {
     const Sight& sight = *running.sight;
     PicturePart shown = part;
-    shown.always_shown = voxels_of_shell(probe_, scene().info());  // all parts show these voxels, even those
+    shown.always_shown = voxels_of_shell(probe_, scene().info());  // every part shows these voxels, including parts
                                                                    // without the probe
     Drawn drawn = shvr::draw(graph, scene(), sight.look, sight.shot, shown, graph.import("light", light));
     running.pace = &rays_;
@@ -294,7 +294,7 @@ bool View::occlusion_is_due() const
            scene().occlusion().is_due();
 }
 
-/// Submits a slice of ambient occlusion. Bricks overlap on screen, so sharp tiles wait for the last slice of occlusion.
+/// Submits a slice of ambient occlusion. Bricks overlap on screen, so sharp tiles wait until no slice is left.
 bool View::submit_occlusion()
 {
     constexpr double LEAST = 2.0, MOST = 256.0;
@@ -302,7 +302,7 @@ bool View::submit_occlusion()
     const Sight& sight = *shown_sight_;
     if (sight.shot.is_slice) return false;
     if (!sight.look.light.occlusion.automatic && !occlusion_is_asked_for_) return false;
-    constexpr double CELL_BRICKS = 8.0;  // computing this many bricks' cells costs about as much as one brick's values
+    constexpr double CELL_BRICKS = 8.0;  // the values of one brick cost about as much as the cells of this many bricks
     const Occlusion::Counts before = scene().occlusion().counts();
     std::optional<FrameGraph> slice = next_occlusion(scene(), sight.look, sight.shot.camera,
                                                      {.bricks = bricks, .cell_bricks = size_t(CELL_BRICKS) * bricks});
@@ -318,8 +318,8 @@ bool View::submit_occlusion()
     return true;
 }
 
-/// Selects the tiles of the next batch, nearest to the focus first: enough that a few batches complete the picture, or
-/// all remaining tiles if they take only a moment.
+/// Selects the next batch of tiles, nearest to the focus first: large enough that a few batches complete the picture,
+/// or all remaining tiles if they take only a moment.
 void View::choose_batch(const glm::dvec2& focus)
 {
     constexpr size_t BATCHES = 6;
@@ -358,7 +358,7 @@ bool View::may_draw(const Tile& tile) const
     return !more_comes || now_s() - tile.drawn_s > AGAIN_S;
 }
 
-/// Returns whether memory suffices for sharp tiles. Reports a lack of memory once per view.
+/// Returns whether there is memory for sharp tiles. Reports a lack of memory once per view.
 bool View::has_room_for_tiles()
 {
     if (unsharp_sight_ == shown_sight_) return false;
@@ -379,7 +379,7 @@ bool View::has_room_for_tiles()
     }
 }
 
-/// Draws a new sketch of the whole picture in place of sharp tiles, which do not fit in memory.
+/// Draws a new sketch of the whole picture instead of sharp tiles, which do not fit in memory.
 bool View::submit_sketch_instead()
 {
     start(base_, shown_sight_, std::nullopt, options_.motion_ms);
@@ -387,7 +387,7 @@ bool View::submit_sketch_instead()
     return submit_sketch(base_, Purpose::base);
 }
 
-/// Returns a box of tiles around a due tile, as large as one step affords. It grows along the row first, then by rows.
+/// Returns a box of tiles around a due tile, as large as one step allows. Grows within the row first, then row by row.
 PixelBox View::strip_of_tiles(const glm::uvec2& nearest) const
 {
     constexpr uint32_t MAX_TILES = (1u << 20) / (TILE * TILE);  // 16 MiB of light
@@ -455,7 +455,7 @@ bool View::submit_tiles()
         }
     if (!nearest) return false;
     if (!has_room_for_tiles()) return submit_sketch_instead();
-    if (!is_listed(*shown_sight_)) return false;  // paint or the probe's shell has reached an unlisted brick
+    if (!is_listed(*shown_sight_)) return false;  // paint or the probe's shell reached an unlisted brick
     if (submit_preparation(*shown_sight_)) return true;
 
     const PixelBox strip = strip_of_tiles(*nearest);
@@ -467,7 +467,7 @@ bool View::submit_tiles()
     const glm::uvec2 size = part.end - part.begin;
     FrameGraph graph;
     const Import light_of_strip = strip_light(size);
-    // Also importing the light of the other tiles makes the barriers cover accesses to it by earlier graphs.
+    // The light of other tiles is imported as well, so that barriers cover earlier graphs' accesses to it.
     for (const gpu::Storage& other : strips_)
         if (other && other.import().id != light_of_strip.id)
             static_cast<void>(graph.import("light of other tiles", other.import()));
@@ -481,7 +481,7 @@ bool View::submit_tiles()
     submit(std::move(graph), std::move(running));
     for (const uint32_t index : running_.back().tiles) {
         Tile& tile = tiles_[index];
-        if (tile.is_urgent) tile.is_in_batch = false;  // changed voxels are shown at once, without waiting for a batch
+        if (tile.is_urgent) tile.is_in_batch = false;  // changed voxels are shown at once instead of with a batch
         tile.is_due = tile.is_urgent = false;
         tile.drawn_s = now_s();
     }
@@ -518,7 +518,7 @@ void View::account(const gpu::FrameResult& result, const Running& done)
     busy_since_ = now;
     if (!host_tells_time())
         for (const gpu::PassReport& pass : result.passes) note(pass.name, pass.gpu_ms, waits(pass));
-    // Passes may overlap, so the sum of their times can exceed the total time.
+    // Passes may overlap, so their times may add up to more than the total time.
     const double ms = host_tells_time() ? host_ms : result.gpu_ms;
     // If only the host can measure time, the whole time is charged to the most expensive pass.
     if (host_tells_time() && !result.passes.empty()) {

@@ -14,7 +14,7 @@
 //
 // Everything is drawn in small graphs of about `step_ms` each, with about `in_flight_ms` of them in flight at most, so
 // that a user interface, a brush or a relevance pass on the same queue waits at most that long. Nothing is submitted
-// while nothing changes. One thread, the renderer's; only the calls whose comments say so wait for the device.
+// while nothing changes. Used only by the renderer's thread. A call waits for the device only if its comment says so.
 
 #include <array>
 #include <chrono>
@@ -36,14 +36,14 @@ public:
         double step_ms = 2.0;        ///< device time of one graph
         double in_flight_ms = 3.5;   ///< total device time of the graphs in flight
         double motion_ms = 40.0;     ///< device time of a sketch of the whole picture
-        double probe_ms = 20.0;      ///< device time of a sketch of the pixels that the probe may cover
-        double moment_ms = 300.0;    ///< if the sharp tiles take less than this, all are shown at once
+        double probe_ms = 20.0;      ///< device time of a sketch of the pixels that the probe covers
+        double moment_ms = 300.0;    ///< sharp tiles that take less than this in total are shown all at once
         bool swap_red_blue = false;  ///< swaps red and blue in the shown images
     };
     View(Renderer& renderer, const Options& options) : renderer_(renderer), options_(options) {}
     explicit View(Renderer& renderer) : View(renderer, Options{}) {}
 
-    /// Sets the displayed content and redraws everything. To be called only if something changed.
+    /// Sets the displayed content and redraws everything. Call it only if something has changed.
     void look(const Look& look, const InteractionSettings& interaction, const Shot& shot, const glm::uvec2& pixels);
     void look(const Session& session, const Shot& shot, const glm::uvec2& pixels)
     {
@@ -55,36 +55,36 @@ public:
     /// Reports that finer paged bricks of these voxels have arrived. While more bricks arrive, tiles that were drawn
     /// without them are redrawn a few times a second.
     void bricks_arrived(const VoxelBox& voxels);
-    /// Reports that the ambient occlusion of these voxels has been renewed.
+    /// Reports that the ambient occlusion of these voxels has changed.
     void light_changed(const VoxelBox& voxels);
 
-    /// Renews ambient occlusion once, even if the session has disabled automatic updates.
+    /// Updates ambient occlusion once, even if the session has disabled automatic updates.
     void update_occlusion() { occlusion_is_asked_for_ = true; }
 
-    /// Collects finished submissions and loaded bricks, and submits the next work.
+    /// Collects finished submissions and loaded bricks, then submits the next work.
     void advance();
-    // The steps of advance(), for owners of several views. Owners take the scene's changes and report them to views.
+    // The steps of advance(), for owners of several views. Such an owner reports the scene's changes to its views.
     void collect() { reap(); }
-    // `ahead_ms`: device time allowed in flight beyond `in_flight_ms`, because the caller will not poll for that long.
-    void submit_sketches(double ahead_ms = 0.0);  ///< submits only the work that is_sketched() waits for
+    // `ahead_ms`: device time allowed in flight in addition to `in_flight_ms`, as the caller will not poll that long.
+    void submit_sketches(double ahead_ms = 0.0);  ///< submits only the work that is_sketched() requires
     void submit_due(double ahead_ms = 0.0);
-    /// Whether the whole picture is shown for the requested sight, even if coarsely.
+    /// Whether the requested sight is shown in the whole picture, even if coarsely.
     bool is_sketched() const { return sight_ == shown_sight_ && !base_.job && !patch_.job && !patch_is_due(); }
     /// Whether no work is due or in flight. Bricks may still arrive.
     bool is_finished() const;
     bool is_idle() const { return running_.empty(); }
 
-    /// Waits for the graphs in flight, which takes about `in_flight_ms`.
+    /// Waits for the graphs in flight, for about `in_flight_ms`.
     void wait();
-    /// Whether the picture is as sharp as the budget allows, and no work is due or in flight.
+    /// Whether the picture is as sharp as the budget allows, with no work due or in flight.
     bool complete() const;
     /// The camera of the picture in layers(); null before the first picture.
     const Camera* shown_camera() const { return shown_sight_ ? &shown_sight_->shot.camera : nullptr; }
-    /// Changes whenever the result of layers() changes, for callers that show the layers.
+    /// A number, for callers that show the layers, that changes with the result of layers().
     uint64_t revision() const { return revision_; }
 
-    /// Images to copy over each other, back to front. Each is an rgba8_unorm image (with red and blue swapped if the
-    /// options say so). Source and target of a copy have the same size.
+    /// Images to copy over each other, from back to front. Each is an rgba8_unorm image (with red and blue swapped if
+    /// the options say so). Source and target of a copy have the same size.
     struct Layer {
         Import image;
         PixelBox source, target;
@@ -93,13 +93,13 @@ public:
     /// Returns the layers combined, as a screen would show them. Waits for the device.
     Image8 read_back();
 
-    /// Device time of one pass in the current picture, or else in the last one.
+    /// Device time of one pass in the current picture, or in the last one if the current has none.
     struct PassTime {
         std::string name;
         uint64_t runs = 0;
         double total_ms = 0.0;
         double longest_ms = 0.0;
-        uint64_t waits = 0;  ///< number of runs that had to wait for results of earlier passes
+        uint64_t waits = 0;  ///< number of runs that waited for results of earlier passes
     };
     const std::vector<PassTime>& pass_times() const { return pass_times_; }
     uint64_t submissions() const { return submissions_; }
@@ -113,21 +113,21 @@ private:
     };
     using SightRef = std::shared_ptr<const Sight>;
 
-    /// A part of a picture at some scale, in its own image. Double-buffered: one image is shown while the other is
+    /// A part of a picture at some scale, in images of its own. Double-buffered: one image is shown while the other is
     /// being drawn.
     struct Sketch {
         struct Content {
             SightRef sight;
             std::optional<ProbeLook> probe;
-            double share = 1.0;    ///< size relative to the screen along each axis; 1: sharp
+            double share = 1.0;    ///< size relative to the screen along each axis; 1 is sharp
             glm::uvec2 pixels{0};  ///< size of the whole picture at this scale
             PixelBox part;         ///< scaled pixels; may be empty
             PixelBox target;       ///< screen pixels that `part` covers
         };
         std::array<gpu::Storage, 2> images;
         uint32_t front = 0;
-        Content shown;               ///< the content of images[front]; its sight is null if there is none
-        std::optional<Content> job;  ///< the content that is being drawn into the other image
+        Content shown;               ///< the content of images[front]; without a sight if there is none
+        std::optional<Content> job;  ///< the content being drawn into the other image
         uint32_t next_row = 0;       ///< next row of the job to draw
         uint32_t next_encoded = 0;   ///< next row of the target to encode
         uint32_t running = 0;        ///< graphs in flight
@@ -138,7 +138,7 @@ private:
     };
     struct Tile {
         bool is_shown = false;
-        bool is_drawn = false;  ///< whether it is drawn; it is shown once all tiles of its batch are drawn
+        bool is_drawn = false;  ///< drawn, but shown only once all tiles of the batch are drawn
         bool is_in_batch = false;
         bool is_due = false;
         bool is_urgent = false;  ///< changed by painting, so it is drawn first
@@ -149,8 +149,8 @@ private:
         gpu::Submission submission;
         Purpose purpose = Purpose::preparation;
         double estimate_ms = 0.0;
-        Pace* pace = nullptr;         ///< the estimate, if any, that the graph's measured time updates
-        double units = 0.0;           ///< number of units of work, as counted by that estimate
+        Pace* pace = nullptr;         ///< the estimate, if any, to be updated by the graph's time
+        double units = 0.0;           ///< number of units of work in that estimate
         uint64_t pixels = 0;          ///< number of pixels ray-cast
         std::vector<uint32_t> tiles;  ///< indices
         SightRef sight;
@@ -201,7 +201,7 @@ private:
     void reserve(gpu::Storage& image, const std::string& name, Format format, const glm::uvec2& pixels);
     bool patch_is_due() const;
     double cost_ms(uint64_t pixels) const { return double(pixels) * rays_.ms(); }
-    /// Whether to use the host's clock, as on lavapipe, whose timestamps are wrong during a window's render passes.
+    /// Whether to use the host's clock, as on lavapipe, whose timestamps are wrong while a window renders.
     bool host_tells_time() const
     {
         const gpu::DeviceTraits& traits = renderer_.device().traits();
@@ -212,24 +212,24 @@ private:
     Renderer& renderer_;
     Options options_;
     SightRef sight_;                  ///< the requested state
-    SightRef shown_sight_;            ///< the state shown by base, tiles and patch
-    SightRef coming_sight_;           ///< a requested state whose bricks are being listed
-    SightRef cut_short_sight_;        ///< the last sight for which some rays were cut short
+    SightRef shown_sight_;            ///< the sight shown by base, tiles and patch
+    SightRef coming_sight_;           ///< a requested sight whose bricks are being listed
+    SightRef cut_short_sight_;        ///< the last sight in which some rays were cut short
     std::optional<ProbeLook> probe_;  ///< the requested probe
     Sketch base_, patch_;
     bool patch_is_dirty_ = false;  ///< paint under the probe has changed
     gpu::Storage work_;            ///< linear light of the sketch being drawn
-    /// Linear light of sharp tiles: one image per graph in flight, and one for the next graph, so that no graph waits.
+    /// Linear light of sharp tiles: an image per graph in flight, and one for the next graph, so that no graph waits.
     std::array<gpu::Storage, 3> strips_;
     size_t next_strip_ = 0;
-    bool has_no_strips_ = false;  ///< set when out of memory: tiles are drawn in `work_`
+    bool has_no_strips_ = false;  ///< set if memory ran out: tiles are then drawn in `work_`
     gpu::Storage sharp_;          ///< all sharp tiles
     std::vector<Tile> tiles_;
     std::vector<VoxelBox> changed_during_base_;
     SightRef finer_sight_;    ///< the last sight for which a finer sketch was begun
     SightRef unsharp_sight_;  ///< the last sight whose sharp tiles did not fit in memory
     bool occlusion_is_asked_for_ = false;
-    bool occlusion_was_renewed_ = false;  ///< set until the pixels under the probe show the renewed occlusion
+    bool occlusion_was_renewed_ = false;  ///< set until the pixels under the probe show the updated occlusion
     std::deque<Running> running_;
     double in_flight_ms_ = 0.0;
     // Initial estimates, measured on two cores of a server.

@@ -1,4 +1,4 @@
-// Sketches of a view (view.h), as coarse as time demands: the whole picture, and the pixels the probe may cover.
+// Sketches of a view (view.h), as coarse as time requires: the whole picture, and the pixels the probe may cover.
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 constexpr double MAX_SCALE = 8.0;
 
 /// Returns the share (sketch pixels per screen pixel, along each axis) at which a sketch takes `target_ms`: at most
-/// `most`, and no coarser than is useful. `ms`: the sketch's time at a share of 1.
+/// `most`, and not too coarse to be useful. `ms`: the sketch's time at a share of 1.
 double share_for(double ms, double target_ms, double most)
 {
     return std::clamp(std::sqrt(target_ms / std::max(ms, 1e-9)), std::min(1.0 / MAX_SCALE, most), most);
@@ -33,7 +33,7 @@ void View::start(Sketch& sketch, const SightRef& sight, const std::optional<Prob
         if (const auto& eye = sight->shot.right_eye)
             part = united(part, pixels_of_ball(*eye, sight->pixels, probe->center, probe->reach(spacing)));
     }
-    // An infinite `target_ms` means that nothing moves: the sketch is drawn sharp, whatever it costs.
+    // An infinite `target_ms` means that nothing moves: the sketch is then drawn sharp at any cost.
     const double most = std::isinf(target_ms) ? 1.0 : sight->interaction.resolution;
     const double share = share_for(double(part.area()) * average_ms_per_pixel_, target_ms, most);
     start(sketch, {.sight = sight, .probe = probe, .share = share}, part);
@@ -62,8 +62,8 @@ void View::start(Sketch& sketch, Sketch::Content content, PixelBox part)
     sketch.job = std::move(content);
 }
 
-/// Draws a finer sketch before the sharp tiles, so that the tiles' edges stand out less: once per sight, and only if
-/// the sketch adds little to the picture's total time.
+/// Draws a finer sketch before the sharp tiles, so that the tiles' edges stand out less. Done once per sight, and only
+/// if the sketch adds little to the picture's total time.
 bool View::submit_finer_sketch()
 {
     constexpr double SHARE = 0.18;  // share along each axis; 3 % of all pixels
@@ -80,7 +80,7 @@ void View::drop_finer_sketch()
     if (unsharp_sight_ == shown_sight_) mark_due({glm::uvec2(0), shown_sight_->pixels}, false);
 }
 
-/// Submits the next graph of a sketch. Returns false if no graph is left, or if bricks are still being listed.
+/// Submits the next graph of a sketch. Returns false if no graph is left or bricks are still being listed.
 bool View::submit_sketch(Sketch& sketch, Purpose purpose)
 {
     if (!sketch.job) return false;
@@ -110,8 +110,8 @@ void View::submit_rows(Sketch& sketch, Purpose purpose)
     Running running{.purpose = purpose, .pixels = uint64_t(width) * rows, .sight = job.sight};
     const Resource light = draw(graph, part, work_.import(), running);
     const uint32_t end = sketch.next_row + rows;
-    const bool encodes = job.share == 1.0;  // otherwise rows are enlarged with their neighbours, after
-                                            // all rows are drawn
+    const bool encodes = job.share == 1.0;  // otherwise rows are enlarged, using neighbouring rows, once all rows are
+                                            // drawn
     if (encodes) encode_rows(graph, light, sketch, sketch.next_encoded, end);
     submit(std::move(graph), std::move(running));
     sketch.next_row = end;
