@@ -16,16 +16,16 @@ namespace shvr::ui {
 
 namespace {
 
-/// While work is pending the loop runs at this interval, so that the device never runs out of work.
+/// Interval of the loop while work is pending, short enough that the device never runs out of work.
 constexpr double WORK_S = 0.001;
 constexpr double IDLE_S = 0.25;
-constexpr double CLICK_S = 0.05;  ///< interval while a click may become a double click
-/// Without input, sharper tiles are shown at this interval, since drawing the interface delays the tiles.
+constexpr double CLICK_S = 0.05;  ///< interval while a click may turn out to be a double click
+/// Interval at which sharper tiles are shown without input. Drawing more often would delay the tiles themselves.
 constexpr double SHARPEN_S = 0.12;
-/// Duration after the last event for which widgets may settle, hover and blink.
+/// Duration after the last event for which the interface is drawn, so that widgets can settle, hover and blink.
 constexpr double AFTERGLOW_S = 0.3;
 
-/// Takes budgets that the command line does not set from the preferences. The workbench reports errors in these.
+/// Takes budgets from the preferences unless the command line sets them. The workbench reports invalid preferences.
 gpu::Budget budget_of(const AppOptions& options)
 {
     gpu::Budget budget = options.budget;
@@ -65,7 +65,7 @@ App::App(const AppOptions& options) : options_(options), window_("SHVR", options
         if (!*log_) fail(options.log.string(), ": cannot be written; expected a file for the log of actions");
         bench_->log_to([this](const std::string& line) { *log_ << with_present_time(line) << std::endl; });
     }
-    // Errors of opening are shown over the start page.
+    // Opening now, with the start page behind it, shows errors over that page.
     if (!options.input.empty())
         bench_->begin_open(options.input, options.settings);
     else
@@ -114,7 +114,7 @@ void App::turn()
     next_frame_s_ = std::max(next_frame_s_ + 1.0 / frames_per_second, now);
 }
 
-/// Applies changes of the workbench to the window.
+/// Applies changes in the workbench's state to the window.
 void App::follow_workbench()
 {
     if (const std::string text = bench_->take_clipboard(); !text.empty()) ImGui::SetClipboardText(text.c_str());
@@ -133,7 +133,7 @@ void App::follow_workbench()
         keep_drawing(AFTERGLOW_S);
 }
 
-/// If frames keep failing the window is useless, so the program ends with the reason.
+/// If every frame fails for a while, the window is useless: the program then ends with the reason.
 void App::draw()
 {
     constexpr double PATIENCE_S = 10.0;
@@ -153,8 +153,8 @@ void App::draw()
     if (now - *undrawn_since_s_ > PATIENCE_S) fail("the window cannot be drawn: ", frame_failure_);
 }
 
-/// Called if no image is available, because all are on their way to the screen or the window is hidden: work goes on,
-/// and the frame is tried again, less and less often.
+/// Called if no image is available, because all are queued for the screen or the window is hidden. The loop continues,
+/// and the frame is tried again at growing intervals.
 void App::try_again_soon()
 {
     constexpr double FIRST_S = 0.002, LAST_S = 0.05, GROWTH = 0.1;
@@ -164,7 +164,7 @@ void App::try_again_soon()
     next_frame_s_ = now + std::clamp(GROWTH * (now - *undrawable_since_s_), FIRST_S, LAST_S);
 }
 
-/// Never loses work: saves it before the window closes, and if saving fails keeps the window open.
+/// Never loses work: saves before the window closes, and keeps the window open if saving fails.
 bool App::closes()
 {
     if (options_.stop && *options_.stop && !std::exchange(was_stopped_, true)) {
@@ -175,14 +175,14 @@ bool App::closes()
     std::string why;
     switch (bench_->leave(why)) {
         case Workbench::Leave::now: return true;
-        case Workbench::Leave::later: return false;  // closes later; until then everything can be used
+        case Workbench::Leave::later: return false;  // closes once saving is done; until then, work can go on
         case Workbench::Leave::refused: return !refuses_to_close(why);
     }
     return false;
 }
 
-/// Paint is never discarded. If the journal has all of it, the window closes when the user asks for it a second time,
-/// and unsaved settings are discarded.
+/// Never discards paint. If the journal has all of it, the window closes when the user asks a second time, and unsaved
+/// settings are discarded.
 bool App::refuses_to_close(const std::string& why)
 {
     const Document& document = bench_->document();
@@ -198,7 +198,7 @@ bool App::refuses_to_close(const std::string& why)
     return true;
 }
 
-/// Draws the interface for at least this duration, and for at least the frames that widgets need to find their sizes.
+/// Draws the interface for at least `for_s`, and for as many frames as widgets need to determine their sizes.
 void App::keep_drawing(double for_s)
 {
     constexpr uint64_t SETTLING_FRAMES = 3;
@@ -216,11 +216,11 @@ bool App::something_moves() const
     return bench_->is_stirring() || glm::distance(bench_->document().probe_voxel(), drawn_probe_voxel_) > STIR_VOXELS;
 }
 
-/// Returns when the interface has to be drawn next, as far as is known: now, at a later time, or never.
+/// Returns when the interface has to be drawn next, according to the present state: now, at a later time, or never.
 double App::next_reason_to_draw_s() const
 {
     if (undrawable_since_s_) return 0.0;
-    // Until the first picture exists, the interface leaves the device to that picture.
+    // Until the first picture exists, the interface is drawn rarely, to leave the device's time to that picture.
     const bool waits_for_picture =
         bench_->is_open() && !bench_->document().screen.shows_anything() && viewport_.pixels().x > 0;
     if (waits_for_picture && !report_.has_unanswered()) return report_.last_begun_s() + SHARPEN_S;
@@ -241,7 +241,7 @@ double App::time_to_wait() const
 
 namespace {
 
-/// Returns whether a motion is followed by another while no button is held, so that only the last position matters.
+/// Returns whether another motion follows with no button held: only the last position of such motions matters.
 bool is_overtaken(const std::vector<InputEvent>& events, const InputEvent& event)
 {
     const size_t next = size_t(&event - events.data()) + 1;
@@ -251,7 +251,7 @@ bool is_overtaken(const std::vector<InputEvent>& events, const InputEvent& event
 
 }  // namespace
 
-/// Dear ImGui answers for the previous frame: without a held button or a popup, the windows under the pointer decide.
+/// Dear ImGui answers for the previous frame. So without a held button or a popup, looks up the window at the pointer.
 bool App::ui_has_mouse(const InputEvent& event) const
 {
     const ImGuiIO& io = ImGui::GetIO();
@@ -266,8 +266,8 @@ bool App::ui_has_mouse(const InputEvent& event) const
     return covers(at / glm::dvec2(io.DisplayFramebufferScale.x, io.DisplayFramebufferScale.y));
 }
 
-/// Returns whether the interface takes a key. Typed text goes to its field. While panels are used by keyboard, or a
-/// popup is open, the panels or the popup get the keys that navigate, and all other keys act as usual.
+/// Returns whether the interface takes a key. Typed text goes to the field being edited. While panels are used by
+/// keyboard, or a popup is open, they get the keys that navigate, and all other keys act as shortcuts.
 bool App::ui_has_key(const KeyEvent& event) const
 {
     if (field_has_keys() || choosers_have_keys() || bench_->model().shows_palette) return true;
@@ -275,7 +275,7 @@ bool App::ui_has_key(const KeyEvent& event) const
     return panels_have_keyboard() && moves_in_panels(event);
 }
 
-/// Returns whether a field, a menu or a dialog is open, or the user moves through a panel by keys.
+/// Returns whether a field, a menu or a dialog is open, or the user navigates a panel by keyboard.
 bool App::panels_have_keyboard() const
 {
     const bool has_popup = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
@@ -283,7 +283,7 @@ bool App::panels_have_keyboard() const
            bench_->model().shows_palette;
 }
 
-/// Holds back input after a key that may have opened or closed a field, until a frame shows where the input goes.
+/// Holds back input after a key that may have opened or closed a field, until a frame shows who has the keyboard.
 std::vector<InputEvent> App::events_in_turn(double timeout_s)
 {
     for (InputEvent& event : window_.wait_events(timeout_s)) held_back_.push_back(std::move(event));
@@ -299,7 +299,7 @@ void App::hold_back(std::vector<InputEvent>& events, size_t first)
     events.erase(begin, events.end());
 }
 
-/// Handles Enter and Escape in the interface, and keys that lead to a field. Called before its actions are applied.
+/// Returns whether a key may open or close a field: Enter or Escape in the interface, or a shortcut that shows a field.
 bool App::decides_who_has_keys(const KeyEvent& event, bool is_for_ui) const
 {
     if (!event.pressed) return false;
@@ -329,7 +329,7 @@ void App::handle_events(double timeout_s)
             viewport_.handle(event, model(), ui_has_mouse(event), actions_);
         }
         bench_->set_pointer(viewport_.pointer());
-        apply_all();  // the next event may depend on an action's effect: on the probe's position, the selection
+        apply_all();  // the next event may depend on an action's effect, such as a new probe position or selection
         if (decides) hold_back(events, i + 1);
     }
     if (window_.has_clicks()) keep_drawing(AFTERGLOW_S);
@@ -347,7 +347,7 @@ void App::apply_all()
 {
     for (const Action& action : std::exchange(actions_, {})) {
         was_asked_to_close_ &= action.is<Quit>();
-        // If nothing is open, such actions are ignored: an error for each key would cover the hint.
+        // Unavailable actions are ignored while nothing is open: an error for each key would cover the hint.
         if (!bench_->is_open() && !bench_->why_not(action).empty()) continue;
         static_cast<void>(bench_->apply(action));
     }

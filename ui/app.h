@@ -4,8 +4,8 @@
 //   events -> Viewport, Keyboard, panels -> Actions -> Workbench -> View -> Window
 //
 // One thread (main). Brush, relevance, probe, sketch, tiles and user interface share the device's queue in slices of a
-// few milliseconds. The interface is drawn when something changed, at most at the session's frame rate; the loop sleeps
-// while idle.
+// few milliseconds. The interface is drawn when something has changed, but no more often than the session's frame rate;
+// the loop sleeps while idle.
 
 #include <atomic>
 #include <memory>
@@ -21,18 +21,18 @@
 namespace shvr::ui {
 
 struct AppOptions {
-    std::string input;  ///< path of a session, project or volume; empty: nothing is open
+    std::string input;  ///< path of a session, project or volume; empty: opens the start page
     std::vector<std::string> settings;
     std::string device;
     gpu::Budget budget;
     int threads = 0;
     bool validation = false;
-    const std::atomic<bool>* stop = nullptr;  ///< once true, the window is asked to close, as if by its button
-    bool saves_outside = false;               ///< sessions may write outside their folders without a question
-    bool allow_force = false;                 ///< lets a haptic device with a verified profile push the hand
-    std::filesystem::path settings_folder{};  ///< of preferences and kept transfer functions; empty: none
-    std::filesystem::path log{};              ///< receives each action as a line that replays it; empty: none
-    std::filesystem::path screen_texts{};     ///< receives each frame's texts (screen_text.h); empty: none
+    const std::atomic<bool>* stop = nullptr;  ///< once true, the window closes as if its close button was clicked
+    bool saves_outside = false;               ///< sessions may write outside their folders without asking the user
+    bool allow_force = false;                 ///< a haptic device with a verified profile may exert forces
+    std::filesystem::path settings_folder{};  ///< folder of preferences and the user's transfer functions; empty: none
+    std::filesystem::path log{};              ///< file that gets each action as a replayable line; empty: none
+    std::filesystem::path screen_texts{};     ///< file that gets each frame's texts (screen_text.h); empty: none
     std::string version{};                    ///< version of the program, for reports
     glm::uvec2 window_size{1280, 800};
 };
@@ -82,7 +82,7 @@ private:
     struct Detach {
         void operator()(Window* window) const { window->detach(); }
     };
-    std::unique_ptr<Window, Detach> attached_;  ///< detaches the window before the device is destroyed
+    std::unique_ptr<Window, Detach> attached_;  ///< detaches the window from the device before the device is destroyed
     std::unique_ptr<Workbench> bench_;
     std::unique_ptr<std::ofstream> log_;
     Viewport viewport_;
@@ -90,22 +90,22 @@ private:
     Actions actions_;
     std::vector<InputEvent> held_back_;  ///< input for the frame after held_back_in_frame_
     int held_back_in_frame_ = -1;
-    bool was_asked_to_close_ = false;  ///< closing was refused because saving failed, and no action has followed since
+    bool was_asked_to_close_ = false;  ///< closing was refused because saving failed; cleared by the next action
     bool was_stopped_ = false;         ///< the program was asked to stop from outside (AppOptions::stop)
     std::string frame_failure_;
     std::optional<double> undrawn_since_s_;  ///< time since which every frame has failed
 
     Appearance appearance_;
-    uint64_t read_messages_ = 0;  ///< number of messages whose characters the fonts contain
+    uint64_t read_messages_ = 0;  ///< number of messages whose characters have been requested from the fonts
 
     // Pace
     double next_frame_s_ = 0.0;
-    std::optional<double> undrawable_since_s_;  ///< time since which no image is available, or the last one is lost
+    std::optional<double> undrawable_since_s_;  ///< time since which no image has been available; null: one is
     double ui_until_s_ = 1.0;                   ///< the interface is drawn at least until this time
     uint64_t ui_until_frame_ = 3;               ///< the interface is drawn at least until this frame is presented
     double last_keys_s_ = 0.0;
     uint64_t drawn_revision_ = ~uint64_t(0);
-    bool drew_complete_ = false;  ///< whether the interface, as last drawn, shows that the picture is sharp
+    bool drew_complete_ = false;  ///< whether the last drawn interface reports the picture as sharp
     bool drew_cut_box_ = false;
     uint64_t drawn_messages_ = 0, drawn_openings_ = 0;
     glm::dvec3 drawn_probe_voxel_{0.0};

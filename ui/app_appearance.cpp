@@ -1,4 +1,4 @@
-// Appearance of the interface and keyboard focus: theme, scale, fonts, and panels used without a mouse.
+// Appearance of the interface and keyboard focus: theme, scale, fonts, and the use of panels by keyboard.
 
 #include <algorithm>
 
@@ -13,7 +13,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// Requests the characters of all names given by the user. Derived texts, such as histories and lists, need no others.
+/// Requests the characters of all names given by the user. Derived texts, such as history entries, contain no others.
 void want_glyphs_of(const Model& model)
 {
     want_glyphs(model.volume.name);
@@ -25,7 +25,7 @@ void want_glyphs_of(const Model& model)
     for (const std::filesystem::path& path : model.preferences.recent) want_glyphs(path.native());
 }
 
-/// Acts as if a navigation key had been pressed: frames the window's first item, which then takes the keys.
+/// Acts as if a navigation key had been pressed: frames the window's first item, which then gets the keyboard.
 void give_keyboard_to(ImGuiWindow* window, ImGuiNavLayer layer)
 {
     if (!window) return;
@@ -39,7 +39,7 @@ void give_keyboard_to(ImGuiWindow* window, ImGuiNavLayer layer)
 
 }  // namespace
 
-/// Follows preferences, the screen that the window is on, and names in other scripts. Call between frames.
+/// Adapts style and fonts to the preferences, to the window's screen, and to names in other scripts. Between frames.
 void App::follow_appearance()
 {
     const Model now = bench_->model();
@@ -59,14 +59,14 @@ void App::follow_appearance()
     keep_drawing(0.5);  // while panels settle into their new places
 }
 
-/// Called after panels or the menu were used by keyboard: otherwise the framed item would take the next Space.
+/// Call after panels or the menu were used by keyboard: otherwise the framed item would react to the next Space.
 void App::leave_panels() const
 {
     const bool has_popup = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
     if (ImGui::GetIO().NavVisible && !has_popup && !field_has_keys()) ImGui::SetWindowFocus(nullptr);
 }
 
-/// Called inside a frame, since windows are known by then.
+/// Gives the keyboard to a panel or menu on request. Call inside a frame, when Dear ImGui knows its windows.
 void App::follow_focus()
 {
     const std::string what = bench_->take_focus();

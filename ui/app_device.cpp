@@ -13,8 +13,8 @@ void App::attach()
     attached_.reset(&window_);
 }
 
-/// Retries, because a driver needs a moment after a reset. The document stays open; only unrecorded changes are lost.
-/// If no device can be created, the program ends with the reason; unsaved work is in the journal.
+/// Retries for a while, since a driver needs a moment after a reset. The document stays open; only unrecorded changes
+/// are lost. If no device can be created, the program ends with the reason, and unsaved work is in the journal.
 void App::restart_device(const std::string& why)
 {
     constexpr int TRIES = 5;

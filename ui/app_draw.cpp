@@ -1,4 +1,4 @@
-// A frame of the window: the panels' model, the lines over the panes, and the report of a run.
+// Draws a frame of the window: the panels' model, the lines over the panes, and the report of a run.
 
 #include <algorithm>
 #include <fstream>
@@ -21,7 +21,7 @@ ImU32 color_of(const glm::dvec3& linear, float alpha)
     return ImGui::GetColorU32(ImVec4(encoded(linear.r), encoded(linear.g), encoded(linear.b), alpha));
 }
 
-/// Words have a dark background, so that they can be read on any picture.
+/// Draws marks and their texts. Texts have a dark background, so that they can be read on any picture.
 template <class OnScreen>
 void draw_over(const Marks& marks, const OnScreen& on_screen, ImDrawList& list)
 {
@@ -44,11 +44,11 @@ bool App::draw_ui()
 {
     const double begun = window_.now_s();
     const bool moves = something_moves(), is_open = bench_->is_open();
-    // A software device presents after all earlier submissions, so waiting here replaces a wait below, and the measured
-    // cost of the view excludes the interface.
+    // On a software device, presentation waits for all earlier submissions. This wait, in its place, makes the wait
+    // known, so that it can be subtracted from the frame's time.
     if (is_open && renderer_->device().traits().is_cpu) bench_->screen().wait();
     const double waited_s = window_.now_s() - begun;
-    follow_appearance();  // renewing fonts waits for the device, so no image of the screen may be acquired yet
+    follow_appearance();  // renewing fonts waits for the device, so it must precede the acquisition of an image
     if (!window_.is_ready()) return false;
     std::vector<View::Layer> layers;
     Layout layout{.begin = glm::uvec2(0), .end = window_.pixels()};
@@ -64,7 +64,7 @@ bool App::draw_ui()
         drawn_probe_voxel_ = document.probe_voxel();
     }
     viewport_.set_layout(layout);
-    // Submits more work while presentation waits. Not on a software device, where that work would prolong the wait.
+    // Submits more work while presentation waits; not on a software device, where more work would prolong the wait.
     std::function<void(double)> go_on;
     if (is_open && !renderer_->device().traits().is_cpu)
         go_on = [this](double wait_ms) { bench_->screen().submit_ahead(wait_ms); };
@@ -80,12 +80,12 @@ bool App::draw_ui()
                        .moves = moves,
                        .shows_picture = !layers.empty(),
                        .shows_sharp_picture = !layers.empty() && bench_->document().screen.complete()});
-    // On a software device, a presented frame is done. A later report would add the wait for events to its time.
+    // On a software device, a presented frame is done. A later report would add the wait for events to its duration.
     report_.done(window_.frames_done(), window_.now_s());
     return true;
 }
 
-/// Writes the file atomically: other processes read it while frames are drawn.
+/// Replaces the file atomically, since other processes read it while frames are drawn.
 void App::write_screen_texts() const
 {
     const ImDrawData* const drawn = ImGui::GetDrawData();
@@ -98,7 +98,7 @@ void App::write_screen_texts() const
     std::filesystem::rename(written, options_.screen_texts);
 }
 
-/// Shows a notice until there is a picture.
+/// Shows a notice until the first picture of the volume exists.
 void App::say_that_it_is_coming() const
 {
     const glm::dvec2 middle = 0.5 * glm::dvec2(viewport_.layout().begin + viewport_.layout().end);
@@ -111,8 +111,8 @@ void App::say_that_it_is_coming() const
         words, [](const glm::dvec2& at) { return ImVec2(float(at.x), float(at.y)); }, *ImGui::GetBackgroundDrawList());
 }
 
-/// Draws the lines over each pane: the probe's outline, visible even if the probe is hidden; in maps, the camera's
-/// direction; and a line towards the point to which assistance pulls the probe.
+/// Draws the lines over each pane: the probe's outline, even if the probe is hidden by the volume; in maps, the
+/// camera's direction; and a line towards the point to which assistance pulls the probe.
 void App::draw_strokes() const
 {
     const Document& document = bench_->document();

@@ -10,8 +10,8 @@ namespace shvr::ui {
 
 bool show_in_browser(const std::filesystem::path& page)
 {
-    // In a session of its own, so that Ctrl-C in this terminal does not end the browser; nothing of it on our output,
-    // which may be JSON. The shell ends at once, so waiting for it takes milliseconds and leaves no zombie.
+    // Starts the browser in a session of its own, so that Ctrl-C in this terminal does not end it, and without output
+    // here, which may be JSON. The shell ends at once: waiting for it takes milliseconds and leaves no zombie.
     std::string shell = "sh", option = "-c", path = page.string();
     std::string script =
         "command -v xdg-open > /dev/null && exec setsid -f xdg-open \"$0\" < /dev/null > /dev/null 2>&1";

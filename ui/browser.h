@@ -5,8 +5,8 @@
 
 namespace shvr::ui {
 
-/// Opens a local page by xdg-open, which outlives this program. Returns false if there is no xdg-open; failures of the
-/// browser itself are not noticed.
+/// Opens a local page with xdg-open; the browser may outlive this program. Returns false if xdg-open is missing;
+/// failures of the browser itself are not detected.
 bool show_in_browser(const std::filesystem::path& page);
 
 }  // namespace shvr::ui

@@ -1,5 +1,5 @@
 #pragma once
-// The window system, for a report on the machine. Main thread, while no window is open.
+// Describes the window system, for a report on the machine. Main thread, while no window is open.
 
 #include <string>
 #include <vector>
@@ -11,7 +11,7 @@ struct DisplayReport {
     std::vector<std::string> screens{};  ///< name and size of each
     std::string font{};                  ///< file of the interface's font; empty: a small built-in one is used
 };
-/// Connects to the display and leaves it again; opens nothing.
+/// Connects to the display, collects the report and disconnects. Opens no window.
 DisplayReport survey_display();
 
 }  // namespace shvr::ui

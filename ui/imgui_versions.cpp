@@ -11,7 +11,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// Calls ImGui_ImplVulkan_Init in the form of the present version: later ones have the render pass in `Info`.
+/// Calls ImGui_ImplVulkan_Init, whose signature depends on the version: later versions have the render pass in `Info`.
 template <class Info>
 void init_vulkan(Info& info, VkRenderPass pass)
 {
@@ -30,7 +30,7 @@ ImVec2 place_of(const glm::dvec2& pixels)
     return {float(pixels.x) / scale.x, float(pixels.y) / scale.y};
 }
 
-/// Lets event times, not frame times, decide whether a press counts as the second of two.
+/// Decides whether the next press counts as a double click: by the times of events, not by those of frames.
 void allow_double_click(bool is_double)
 {
     ImGui::GetIO().MouseDoubleClickTime = is_double ? std::numeric_limits<float>::max() : 0.0f;
@@ -77,7 +77,7 @@ bool is_alt(int key)
     return key == GLFW_KEY_LEFT_ALT || key == GLFW_KEY_RIGHT_ALT;
 }
 
-/// Returns the pointer position. Not for frames with a click: a click has its own position, which must come last.
+/// Returns the pointer's position now. Not for frames with a click, which must use the position of the click.
 ImVec2 pointer_of(GLFWwindow* window)
 {
     const bool is_here = glfwGetWindowAttrib(window, GLFW_FOCUSED) || glfwGetWindowAttrib(window, GLFW_HOVERED);
@@ -89,8 +89,8 @@ ImVec2 pointer_of(GLFWwindow* window)
 
 }  // namespace
 
-/// Makes every frame apply all events before it: of two contradicting events, the later counts. The back end reports
-/// the mouse as well, but the reports made here come after its own.
+/// Makes each frame apply all events queued before it: of two contradicting events, the later one wins. The back end
+/// also reports the mouse, but the reports made here come later.
 void set_up_imgui_input()
 {
     ImGui::GetIO().ConfigInputTrickleEventQueue = false;
@@ -101,7 +101,7 @@ void tell_imgui_key(GLFWwindow* window, int key, bool pressed, int mods)
     if (!is_alt(key)) ImGui_ImplGlfw_KeyCallback(window, key, 0, pressed ? GLFW_PRESS : GLFW_RELEASE, mods);
 }
 
-/// Adds the character to the frame's text at once: a queued event would be invisible to code that reads that text.
+/// Adds the character to the frame's text immediately, since code that reads that text would not see a queued event.
 void tell_imgui_character(GLFWwindow*, unsigned character)
 {
     if (character == 0) return;

@@ -1,7 +1,7 @@
 #pragma once
-// Differences between the supported versions of Dear ImGui: 1.86 (Debian 12) and 1.90 (Debian 13,
-// Ubuntu 24.04). Until 1.86 a program writes the state of keys and buttons before each frame; since 1.87 it passes
-// events, which Dear ImGui applies in NewFrame. Either way a frame here sees the state that it would see in 1.86.
+// Hides differences between the supported versions of Dear ImGui: 1.86 (Debian 12) and 1.90 (Debian 13, Ubuntu 24.04).
+// In 1.86, a program writes the state of keys and buttons before each frame; since 1.87, it passes events, which Dear
+// ImGui applies in NewFrame. With these functions, a frame sees the same state in both versions: that of 1.86.
 //
 // Main thread only.
 
@@ -25,15 +25,15 @@ void set_up_imgui_input();
 /// Reports a pressed or released key. `mods`: as in GLFW.
 void tell_imgui_key(GLFWwindow* window, int key, bool pressed, int mods);
 void tell_imgui_character(GLFWwindow* window, unsigned character);
-/// Reports the state of the buttons, and the position of a change. Call after ImGui_ImplGlfw_NewFrame.
+/// Reports the state of the buttons, and the pointer's position at a change. Call after ImGui_ImplGlfw_NewFrame.
 void tell_imgui_buttons(GLFWwindow* window, const MouseFeed::Frame& frame);
-/// Calls ImGui::NewFrame with these keys down: they were pressed since the previous frame, and may be up again. `mods`:
-/// modifiers that are held now.
+/// Calls ImGui::NewFrame with the keys `pressed` down: keys pressed since the previous frame, even if released again.
+/// `mods`: modifiers that are held now.
 void begin_imgui_frame(GLFWwindow* window, const std::vector<int>& pressed, int mods);
 
-/// Calls ImGui_ImplVulkan_Init, for pictures drawn in this pass.
+/// Calls ImGui_ImplVulkan_Init for drawing in the render pass `pass`.
 void init_imgui_vulkan(ImGui_ImplVulkan_InitInfo info, VkRenderPass pass);
-/// Creates the font texture: records the upload, or (since 1.90) does it at once and records nothing.
+/// Creates the font texture: records the upload into `commands`; since 1.90, uploads at once and records nothing.
 void upload_imgui_fonts(VkCommandBuffer commands);
 /// Call once the recorded upload is done.
 void end_imgui_font_upload();

@@ -11,8 +11,8 @@ namespace shvr::ui {
 namespace {
 
 constexpr double SLOWED = 0.2;
-constexpr double TAPS_PER_SECOND = 5.0;  ///< equivalent tap rate of a held key
-constexpr double MAX_FRAME_S = 0.5;      ///< after a hung frame a held key must not throw the view far away
+constexpr double TAPS_PER_SECOND = 5.0;  ///< a held key acts as often as this many taps per second
+constexpr double MAX_FRAME_S = 0.5;      ///< limits the motion by a held key after a hung frame
 
 /// Keys that stand for no character.
 std::string name_of_key(int key)
@@ -40,14 +40,14 @@ std::string name_of_key(int key)
     return {};
 }
 
-/// Returns the name of the key at that place of an American keyboard: GLFW's codes of printable keys are ASCII.
+/// Returns the name that a key's position has on an American keyboard: GLFW's codes of printable keys are ASCII.
 std::string name_at_place(int key)
 {
     const std::string name = name_of_key(key);
     return !name.empty() ? name : key > GLFW_KEY_SPACE && key < 127 ? std::string(1, char(key)) : std::string();
 }
 
-/// Returns the key's name in the user's layout. Digits go by their place, since some keyboards need Shift for them.
+/// Returns the key's name in the user's layout. Digits use the position, since some layouts need Shift for digits.
 std::string name_in_layout(const KeyEvent& event)
 {
     const bool is_digit = event.key >= GLFW_KEY_0 && event.key <= GLFW_KEY_9;
@@ -75,7 +75,7 @@ std::vector<const Shortcut*> shortcuts_for(const KeyEvent& event, int mods, cons
     const std::string in_layout = name_in_layout(event), at_place = name_at_place(event.key);
     add(in_layout, false);
     add(at_place, true);
-    // Falls back to the key at that place of an American keyboard: brackets, where a German one has umlauts.
+    // Falls back to the key at this position on an American keyboard, such as brackets instead of German umlauts.
     const bool is_letter = in_layout.size() == 1 && std::isalnum(static_cast<unsigned char>(in_layout[0]));
     if (found.empty() && !is_letter && in_layout != at_place) add(at_place, false);
     return found;
@@ -86,7 +86,7 @@ double rate(const Shortcut& shortcut, int mods)
     return shortcut.is_slowed() && (mods & GLFW_MOD_SHIFT) ? SLOWED : 1.0;
 }
 
-/// Binds the key that the user chose to a shortcut. Modifiers alone do not count.
+/// Binds the pressed key to the shortcut that awaits one. Modifiers alone are ignored.
 void bind(const KeyEvent& event, const Model& model, Actions& actions)
 {
     const Shortcut* const shortcut = shortcut_named(model.awaits_key);
@@ -96,7 +96,7 @@ void bind(const KeyEvent& event, const Model& model, Actions& actions)
         actions.push_back(AwaitKey{});
     else if (event.key == GLFW_KEY_DELETE && event.mods == 0)
         actions.push_back(BindKeys{std::string(model.awaits_key), ""});
-    else if (!event.repeated && !key.empty())  // a key that cannot be bound is refused with a message
+    else if (!event.repeated && !key.empty())  // keys that cannot be bound are refused with a message
         actions.push_back(BindKeys{std::string(model.awaits_key), text});
 }
 
@@ -138,7 +138,7 @@ void Keyboard::hold(double seconds, int mods, const std::function<bool(int key)>
         return true;
     });
     for (const Held& held : held_) {
-        // After Ctrl + S, a hand that releases Ctrl first still holds S for a moment: S alone must not act.
+        // When Ctrl + S ends, Ctrl may be released slightly before S: the S that remains must not act as a shortcut.
         const std::vector<const Shortcut*> begun = shortcuts_for(held.pressed, held.pressed.mods, model.keymap);
         for (const Shortcut* shortcut : shortcuts_for(held.pressed, mods, model.keymap))
             if (shortcut->mode == Shortcut::Mode::hold && std::ranges::find(begun, shortcut) != begun.end())

@@ -1,6 +1,6 @@
 #pragma once
-// Converts key events to actions with the keymap (engine/workbench/bindings/keymap.h). Letters and symbols are taken
-// from the user's layout; keys that steer like a joystick have the same place on every keyboard. Main thread.
+// Converts key events to actions with the keymap (engine/workbench/bindings/keymap.h). Letters and symbols depend on
+// the user's layout; keys that steer like a joystick have the same position on every keyboard. Main thread.
 
 #include <vector>
 
@@ -11,9 +11,9 @@ namespace shvr::ui {
 
 class Keyboard {
 public:
-    /// Handles a press or a release. `ui_has_keys`: text is being typed, so presses are ignored here.
+    /// Handles a press or a release. `ui_has_keys`: the interface takes the keys, so presses are ignored here.
     void handle(const KeyEvent& event, const Model& model, bool ui_has_keys, Actions& actions);
-    /// Adds the actions of held keys, `seconds` after the last call. Keys that `is_down` no longer reports are
+    /// Adds the actions of held keys for the `seconds` since the last call. Keys for which `is_down` returns false are
     /// released.
     void hold(double seconds, int mods, const std::function<bool(int key)>& is_down, const Model& model,
               Actions& actions);
@@ -21,7 +21,7 @@ public:
 private:
     struct Held {
         KeyEvent pressed;
-        const Shortcut* lasting = nullptr;  ///< the shortcut whose action ends when the key is released
+        const Shortcut* lasting = nullptr;  ///< the shortcut whose action lasts until the key is released
     };
     static void release(const Held& held, const Model& model, Actions& actions);
     std::vector<Held> held_;
@@ -29,9 +29,9 @@ private:
 
 /// Returns whether Dear ImGui navigates with this key: arrows, Tab, Space, Enter and Escape, without Ctrl and Alt.
 bool moves_in_panels(const KeyEvent& event);
-/// Returns whether Dear ImGui would move the focus into a panel if this key is pressed over the picture: only Tab may.
+/// Returns whether a press of this key over the picture would make Dear ImGui move the focus into a panel (only Tab).
 bool moves_focus(const KeyEvent& event);
-/// Returns whether the key gives the keyboard back to the picture.
+/// Returns whether the key returns the keyboard from the panels to the picture.
 bool leaves_panels(const KeyEvent& event);
 
 /// Returns GLFW_MOD_* of the modifiers that are down.

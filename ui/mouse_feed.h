@@ -1,7 +1,7 @@
 #pragma once
-// Mouse buttons for Dear ImGui. Version 1.86 polls their state once a frame: if a frame takes longer than a click, Dear
-// ImGui takes two clicks for one. Presses wait here, and each frame gets one of them, with its position and time. Any
-// thread, one at a time.
+// Mouse buttons for Dear ImGui. Version 1.86 polls the state of buttons once a frame: if a frame takes longer than a
+// click, two clicks would be taken for one. This class queues presses and releases, and passes one of them to each
+// frame, with its position and time. Any thread, one at a time.
 
 #include <array>
 #include <deque>
@@ -15,20 +15,20 @@ namespace shvr::ui {
 class MouseFeed {
 public:
     static constexpr int BUTTONS = 3;              ///< left, right and middle, as GLFW and Dear ImGui count them
-    static constexpr double DOUBLE_CLICK_S = 0.5;  ///< maximum time from press to press: most desktops take 0.4 to 0.5
+    static constexpr double DOUBLE_CLICK_S = 0.5;  ///< from press to press; most desktops use 0.4 to 0.5 s
 
     struct Frame {
         std::array<bool, BUTTONS> down{};
         std::optional<glm::dvec2> at;  ///< position of the press or release, in pixels; none: nothing changed
-        bool is_double = false;  ///< the same button may have been pressed shortly before; the distance is not checked
+        bool is_double = false;  ///< a press may be the second of a double click, by time; the distance is not checked
     };
 
-    /// Adds a change that happened between the two times: input during a long frame is received only after the frame.
-    /// Other buttons are ignored.
+    /// Adds a change that happened between the two times, which differ if a long frame delayed the input. Buttons other
+    /// than the three are ignored.
     void add(int button, bool pressed, const glm::dvec2& at, double earliest_s, double latest_s);
     /// Returns the state for the next frame.
     Frame next();
-    /// Returns whether a later frame still has changes to receive.
+    /// Returns whether changes are still queued for later frames.
     bool is_waiting() const { return !waiting_.empty(); }
 
 private:

@@ -7,7 +7,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// Adds a time, and drops the oldest ones: a day's work has millions of frames.
+/// Adds a time, and drops the oldest times, since a day's work has millions of frames.
 void note(std::vector<double>& all, double value)
 {
     if (all.size() == 2 * RunReport::KEPT) all.erase(all.begin(), all.begin() + std::ptrdiff_t(RunReport::KEPT));

@@ -13,21 +13,21 @@
 
 namespace shvr::ui {
 
-/// Measurements of a run, for profiling and tests.
+/// Measurements of a run of the application, for profiling and tests.
 struct AppReport {
     std::string gpu_name;
     uint64_t frames = 0;           ///< number of frames of the user interface
     std::vector<double> frame_ms;  ///< durations of interface frames, from the first call until the device has finished
-    /// frame_ms without the wait for running work on a software device: `own_idle_ms` has the frames during which
-    /// nothing refines, `own_busy_ms` the frames during which a picture refines.
+    /// frame_ms without the wait for running work on a software device. `own_idle_ms` holds the frames drawn while no
+    /// picture refines, `own_busy_ms` the frames drawn while one does.
     std::vector<double> own_idle_ms, own_busy_ms;
     std::vector<double> interval_ms;  ///< time between two frames while something was moving
-    std::vector<double> input_ms;     ///< latencies from a key or button until the frame that shows its effect is
+    std::vector<double> input_ms;     ///< latencies from a press until the frame that shows its effect is
                                       ///< finished
     /// Time from opening the last volume until the device has finished the first frame that shows any part of it, and
     /// the first frame that shows all of it sharp.
     std::optional<double> first_picture_ms, sharp_picture_ms;
-    std::vector<double> relevance_ms;  ///< time from requesting relevance until the servo has it
+    std::vector<double> relevance_ms;  ///< latencies from requesting relevance until the servo has it
     uint64_t view_submissions = 0;
     bool view_complete = false;
     ServoState servo;
@@ -42,16 +42,16 @@ struct AppReport {
 
 class RunReport {
 public:
-    /// Number of measured times kept per kind: at least this many, at most twice as many.
+    /// Number of measured times kept of each kind: at least KEPT, at most twice as many.
     static constexpr size_t KEPT = 50'000;
 
-    /// Starts the measurement of first pictures: another scan was opened.
+    /// Restarts the measurement of first pictures, because another scan was opened.
     void opened(double time_s);
-    /// Reports a key or button; the next frame shows its effect.
+    /// Reports the press of a key or button, whose effect the next frame will show.
     void asked(double time_s) { unanswered_s_.push_back(time_s); }
     bool has_unanswered() const { return !unanswered_s_.empty(); }
 
-    /// A frame of the interface that was submitted to the device.
+    /// A frame of the interface, when it has been submitted to the device.
     struct Frame {
         uint64_t number = 0;
         double begun_s = 0.0;
@@ -60,13 +60,13 @@ public:
         bool shows_picture = false, shows_sharp_picture = false;
     };
     void presented(const Frame& frame);
-    /// Reports that the device has finished all frames up to this one.
+    /// Reports that the device has finished all frames up to number `number`.
     void done(uint64_t number, double time_s);
     double last_begun_s() const { return last_begun_s_; }
-    /// Returns the median of the last frames; 0 if there is none.
+    /// Returns the median duration of the last frames; 0 if there is none.
     double recent_frame_ms() const;
 
-    /// Returns the report, without the entries that only the application knows.
+    /// Returns the report, without the members that only the application can fill.
     const AppReport& measured() const { return report_; }
 
 private:
@@ -75,7 +75,7 @@ private:
         std::vector<double> asked_s;
     };
     AppReport report_;
-    std::vector<double> unanswered_s_;  ///< times of keys and buttons that no frame has shown yet
+    std::vector<double> unanswered_s_;  ///< times of presses of keys and buttons whose effect no frame has shown yet
     std::vector<Presented> presented_;
     double opened_s_ = 0.0;
     double last_begun_s_ = 0.0;

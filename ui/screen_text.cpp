@@ -15,7 +15,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// Tolerances in pixels, since glyphs are moved to whole pixels.
+/// Tolerances in pixels, since glyphs are snapped to whole pixels.
 constexpr float NEAR = 0.75f, CUT = 1.0f;
 constexpr int MAX_SPACES = 3;  ///< in a row within one text
 
@@ -23,7 +23,7 @@ struct Box {
     glm::vec2 begin{0}, end{0};
 };
 
-/// Two triangles with one glyph on them, as ImFont::RenderText writes them.
+/// Two triangles that show one glyph, as ImFont::RenderText emits them.
 struct Quad {
     Box place, texels;
 };
@@ -64,7 +64,7 @@ std::string utf8_of(unsigned int character)
     return text;
 }
 
-/// Returns the quad whose six indices begin at `index`; null if they form other triangles.
+/// Returns the quad whose six indices begin at `index`; null if the indices do not form a quad.
 std::optional<Quad> quad_at(const ImDrawList& list, unsigned int index)
 {
     const ImDrawIdx* const at = &list.IdxBuffer[int(index)];
@@ -88,7 +88,7 @@ public:
     {
         const ImFontGlyph* const glyph = glyphs_.at(quad.texels);
         if (!glyph) return;
-        // Computes the quad as it would be drawn if it were not cut.
+        // Reconstructs the quad of the whole glyph, of which clipping may have removed a part.
         const glm::vec2 scale = (quad.place.end - quad.place.begin) / (quad.texels.end - quad.texels.begin);
         const glm::vec2 whole_begin = quad.place.begin - (quad.texels.begin - glm::vec2(glyph->U0, glyph->V0)) * scale;
         const glm::vec2 whole_end = quad.place.end + (glm::vec2(glyph->U1, glyph->V1) - quad.texels.end) * scale;
@@ -100,7 +100,7 @@ public:
 
         if (!continues(pen, top, size, is_seen)) begin_text(top);
         ScreenText* const text = has_text_ ? &texts_.back() : nullptr;
-        // Characters wholly beyond the edge are not drawn, so a cut between two characters is not recognised.
+        // Characters wholly beyond the edge are not drawn, so a cut between two characters goes unnoticed.
         const bool is_cut = begin.x > whole_begin.x + CUT || end.x < whole_end.x - CUT;
         if (is_seen && !text) {
             texts_.push_back({.text = {}, .window = window_, .begin = begin, .end = end});
@@ -120,7 +120,7 @@ public:
     }
 
 private:
-    /// Returns whether the glyph continues the current text; adds the spaces between.
+    /// Returns whether the glyph continues the current text; if so, appends the spaces in between.
     bool continues(float pen, float top, float size, bool is_seen)
     {
         if (!has_text_ || std::abs(top - top_) > NEAR) return false;

@@ -1,7 +1,7 @@
 #pragma once
-// The texts of the last drawn frame, recovered from its triangles: readable text and its position.
-// Tests find menus and buttons by their words, and detect words that are cut off or overlap.
-// Main thread, after Window::present and before the next begin_ui.
+// The texts of the last drawn frame, recovered from its triangles, with their positions. Tests use them to find menus
+// and buttons by their words, and to detect words that are cut off or overlap. Main thread, after Window::present and
+// before the next begin_ui.
 
 #include <string>
 #include <vector>
@@ -13,18 +13,18 @@ struct ImFont;
 
 namespace shvr::ui {
 
-/// Consecutive characters on one line, including spaces, spaced as the font places them.
+/// Consecutive characters of one line, including spaces, as far apart as the font places them.
 struct ScreenText {
     std::string text;            ///< UTF-8
-    std::string window;          ///< Dear ImGui's name of the window that contains it
+    std::string window;          ///< Dear ImGui's name of the window that contains the text
     glm::vec2 begin{0}, end{0};  ///< box of the visible pixels, in pixels of the frame buffer
-    bool is_cut = false;         ///< cut at its left or right end, within a character
+    bool is_cut = false;         ///< the clipping at the left or right end cuts a character
     bool is_scrolled = false;    ///< partly above or below the visible part of its window
 };
 
-/// Returns texts in the order of drawing: later ones lie over earlier ones. Omits invisible characters.
+/// Returns the texts in the order of drawing: later ones cover earlier ones. Omits invisible characters.
 std::vector<ScreenText> screen_texts(const ImDrawData& drawn, const ImFont& font);
-/// State of a frame, for tests that wait for it.
+/// State of a frame, for tests that wait until it is reached.
 struct FrameState {
     uint64_t number = 0;
     bool is_sharp = false;  ///< nothing is left to be refined

@@ -58,7 +58,7 @@ void Swapchain::create_surface()
 
 namespace {
 
-/// Opaque if possible; every pixel is drawn opaque anyway.
+/// Prefers opaque composition. If that is unsupported any other mode works, since every pixel is drawn opaque.
 VkCompositeAlphaFlagBitsKHR alpha_of(const VkSurfaceCapabilitiesKHR& capabilities)
 {
     for (const auto one : {VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR, VK_COMPOSITE_ALPHA_INHERIT_BIT_KHR,
@@ -67,8 +67,8 @@ VkCompositeAlphaFlagBitsKHR alpha_of(const VkSurfaceCapabilitiesKHR& capabilitie
     return VK_COMPOSITE_ALPHA_POST_MULTIPLIED_BIT_KHR;
 }
 
-/// Prefers mailbox: a newer picture replaces one that the screen has not shown, so presenting does not wait for the
-/// screen, as it does with some drivers otherwise. Without mailbox, all pictures are shown in turn.
+/// Prefers mailbox: a newer picture replaces one that the screen has not shown yet, so presentation does not wait for
+/// the screen. Without mailbox, all pictures are shown in turn, and with some drivers presentation then waits.
 VkPresentModeKHR mode_of(VkPhysicalDevice physical, VkSurfaceKHR surface)
 {
     const auto modes = gpu::enumerate<VkPresentModeKHR>([&](uint32_t* count, VkPresentModeKHR* items) {
@@ -82,7 +82,7 @@ constexpr VkImageUsageFlags USAGE = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMA
 
 }  // namespace
 
-/// Re-creates only the surface; the next frame re-creates the swapchain.
+/// Re-creates only the surface; the next frame then re-creates the swapchain.
 void Swapchain::renew_surface()
 {
     device_.wait_idle();
@@ -100,8 +100,8 @@ void Swapchain::choose_format()
     const auto formats = gpu::enumerate<VkSurfaceFormatKHR>([&](uint32_t* count, VkSurfaceFormatKHR* items) {
         vkGetPhysicalDeviceSurfaceFormatsKHR(device_.physical(), surface_, count, items);
     });
-    // The layers are already encoded and are copied byte by byte, so the image must not encode again.
-    // Some drivers list these formats with the colour spaces of HDR screens, too: sRGB is preferred.
+    // The layers are already encoded and are copied byte by byte, so the format must not encode them again. Some
+    // drivers also list these formats with the colour spaces of HDR screens: sRGB is preferred.
     for (const bool any_space : {false, true})
         for (const VkSurfaceFormatKHR& candidate : formats) {
             const bool has_8_bits =
@@ -199,10 +199,10 @@ void Swapchain::renew_fonts()
     create_imgui();
 }
 
-/// Creates a swapchain without waiting for the device: the previous one is freed later. False if minimised.
+/// Creates a swapchain without waiting for the device; the previous one is freed later. Returns false if minimised.
 bool Swapchain::create_swapchain()
 {
-    if (!surface_) create_surface();  // the surface was lost and could not be re-created then
+    if (!surface_) create_surface();  // an earlier attempt lost the surface and could not re-create it
     glfwGetFramebufferSize(window_, &made_for_.x, &made_for_.y);
     VkSurfaceCapabilitiesKHR& capabilities = made_of_;
     check(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_.physical(), surface_, &capabilities),
@@ -246,7 +246,7 @@ bool Swapchain::create_swapchain()
     return true;
 }
 
-/// Retires the swapchain and any image acquired but not used. Returns the swapchain: creating the next one needs it.
+/// Retires the swapchain and an acquired but unused image. Returns the old swapchain, needed to create the next one.
 VkSwapchainKHR Swapchain::retire()
 {
     if (!swapchain_) return VK_NULL_HANDLE;
@@ -260,10 +260,10 @@ VkSwapchainKHR Swapchain::retire()
     return old.swapchain;
 }
 
-/// Frees swapchains whose frames the device has drawn and the screen has taken. Vulkan reveals the latter only by
-/// returning an image that was shown later. While a window's edge is dragged, every frame has its own swapchain, which
-/// gets no image back: of these swapchains only the last ones are kept, and an older one is freed once the device has
-/// finished a later submission, or all submissions.
+/// Frees swapchains whose frames have been drawn by the device and taken by the screen. Vulkan reveals that a frame was
+/// taken only by returning an image that was shown later. While a window's edge is dragged, every frame has its own
+/// swapchain, which never gets an image back. Only the last of these are kept: an older one is freed once the device
+/// has finished a later submission, or all submissions.
 void Swapchain::free_retired()
 {
     constexpr size_t MOST = 2;

@@ -1,6 +1,6 @@
 #pragma once
-// The window's swapchain, and Dear ImGui's Vulkan back end: swapchain.cpp creates them, swapchain_frame.cpp draws with
-// them. The only files outside engine/gpu that call Vulkan.
+// The window's swapchain, and Dear ImGui's Vulkan back end: swapchain.cpp creates both, swapchain_frame.cpp draws with
+// them. These are the only files outside engine/gpu that call Vulkan.
 //
 //   layers of the views -> copied into the swapchain's image -> the interface drawn over them -> presented
 //
@@ -24,8 +24,8 @@ public:
     /// Fails if the device cannot present to the window.
     Swapchain(gpu::Device& device, gpu::Memory& memory, GLFWwindow* window);
     ~Swapchain();
-    /// Called once the frame is submitted, before a call that waits for the screen for about `wait_ms`
-    /// milliseconds.
+    /// Called once the frame is submitted, before a call that is expected to wait `wait_ms` milliseconds for the
+    /// screen.
     using Meanwhile = std::function<void(double wait_ms)>;
     Swapchain(const Swapchain&) = delete;
     Swapchain& operator=(const Swapchain&) = delete;
@@ -37,11 +37,11 @@ public:
     /// Call before ImGui::NewFrame.
     static void begin_ui();
     /// Returns whether a frame can be drawn and shown without waiting, because an image is available. While the window
-    /// is hidden, no image may be available for a long time. Never waits, except some milliseconds for a new swapchain.
-    /// Fails as present() does.
+    /// is hidden, no image may be available for a long time. Does not wait, except some milliseconds for the first
+    /// image of a new swapchain. Fails as present() does.
     bool is_ready();
-    /// Does what Window::present describes; call after ImGui::Render. A failed frame leaves no state that breaks later
-    /// ones; a lost surface is re-created, and the frame is not shown.
+    /// Implements Window::present; call after ImGui::Render. A failed frame leaves no state that breaks later frames. A
+    /// lost surface is re-created, and the frame is not shown.
     bool present(const std::vector<View::Layer>& layers, const glm::uvec2& origin, const Meanwhile& meanwhile);
 
     uint64_t frames_presented() const { return presented_; }
@@ -49,32 +49,32 @@ public:
 
 private:
     static constexpr uint32_t FRAMES_IN_FLIGHT = 2;
-    static constexpr uint32_t IMAGES = 3;  ///< number of images: one is displayed, one is queued, one is drawn
+    static constexpr uint32_t IMAGES = 3;  ///< number of images: one displayed, one queued, one being drawn
     struct Target {
         VkImage image = VK_NULL_HANDLE;
         VkImageView view = VK_NULL_HANDLE;
         VkFramebuffer framebuffer = VK_NULL_HANDLE;
         VkSemaphore drawn = VK_NULL_HANDLE;
-        uint64_t presented = 0;  ///< number of the last frame shown in the image
+        uint64_t presented = 0;  ///< number of the last frame presented in this image
     };
     struct Frame {
         VkCommandBuffer commands = VK_NULL_HANDLE;
         VkSemaphore acquired = VK_NULL_HANDLE;
         VkFence done = VK_NULL_HANDLE;
-        uint64_t number = 0;      ///< number of the last frame recorded here
+        uint64_t number = 0;      ///< number of the last frame recorded in this slot
         uint64_t submission = 0;  ///< submission number of that frame (gpu::Device)
-        uint64_t follows = 0;     ///< number of the frame shown before in the same image
+        uint64_t follows = 0;     ///< number of the frame that the same image showed before
     };
-    /// A swapchain that another one has replaced: the screen may still be reading from it.
+    /// A swapchain that has been replaced by another one: the screen may still be reading from its images.
     struct Retired {
         VkSwapchainKHR swapchain = VK_NULL_HANDLE;
         std::vector<Target> targets;
-        VkSemaphore acquired = VK_NULL_HANDLE;  ///< semaphore of an image in which nothing was drawn
+        VkSemaphore acquired = VK_NULL_HANDLE;  ///< semaphore of an image that was acquired but not drawn
         uint64_t submission = 0;                ///< last submission that uses the swapchain
-        uint64_t presented = 0;                 ///< number of the last frame that it presented
+        uint64_t presented = 0;                 ///< number of the last frame presented through the swapchain
     };
 
-    /// The surface was lost and has to be re-created. Other failures are left to the caller.
+    /// Thrown if the surface was lost and has to be re-created. Callers handle all other failures.
     class SurfaceLost : public Error {
     public:
         using Error::Error;
@@ -123,19 +123,19 @@ private:
     glm::ivec2 made_for_{0};              ///< window size in pixels
     VkSurfaceCapabilitiesKHR made_of_{};  ///< surface capabilities when the swapchain was created
     std::optional<uint32_t> acquired_;    ///< index of the image for the next frame
-    uint32_t patient_acquisitions_ = 0;   ///< acquisitions of a new swapchain that may still block
+    uint32_t patient_acquisitions_ = 0;   ///< remaining acquisitions of a new swapchain that may block
     std::vector<Target> targets_;
     std::deque<Retired> retired_;  ///< the oldest first
     std::array<Frame, FRAMES_IN_FLIGHT> frames_;
     uint32_t next_frame_ = 0;
     VkPresentModeKHR mode_ = VK_PRESENT_MODE_FIFO_KHR;
-    std::array<double, 3> waits_ms_{};  ///< waits of the last frames for the screen
+    std::array<double, 3> waits_ms_{};  ///< times that the last frames waited for the screen
     uint64_t presented_ = 0;
     uint64_t taken_ = 0;            ///< number of the last frame that the screen is known to have taken from the queue
     uint64_t last_submission_ = 0;  ///< last submission of any frame
     bool is_stale_ = false;         ///< the swapchain must be re-created before the next frame
     bool imgui_is_ready_ = false;
-    mutable int max_vertices_ = 0, max_indices_ = 0;  ///< maxima over all frames: the totals handed to Dear ImGui
+    mutable int max_vertices_ = 0, max_indices_ = 0;  ///< maxima over all frames; Dear ImGui sizes its buffers by them
 };
 
 }  // namespace shvr::ui

@@ -1,4 +1,4 @@
-// A frame of the window: recording, submission, presentation, and cleaning up after failures.
+// Draws a frame of the window: recording, submission, presentation, and cleaning up after failures.
 
 #include "ui/swapchain.h"
 
@@ -71,7 +71,7 @@ void Swapchain::draw_layers(VkCommandBuffer commands, VkImage target, const std:
             const View::Layer& layer = layers[last];
             const glm::ivec2 begin(layer.target.begin + origin);
             const glm::uvec2 size = layer.target.end - layer.target.begin;
-            // The window may have shrunk since the layers were drawn.
+            // Skips layers that are larger than the window, which may have shrunk since they were drawn.
             if (glm::any(glm::greaterThan(begin + glm::ivec2(size), window_size))) continue;
             regions.push_back({.srcSubresource = color,
                                .srcOffset = offset(layer.source.begin),
@@ -83,7 +83,7 @@ void Swapchain::draw_layers(VkCommandBuffer commands, VkImage target, const std:
             if (first > 0)  // overwrites earlier copies
                 memory_barrier(commands, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                                VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT);
-            // A copy, not a blit: on a software device a blit of the whole view takes longer than the whole interface.
+            // Not a blit: on a software device, a blit of the whole view takes longer than the interface.
             vkCmdCopyImage(commands, source, VK_IMAGE_LAYOUT_GENERAL, target, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                            uint32_t(regions.size()), regions.data());
         }
@@ -106,12 +106,12 @@ void Swapchain::record(const Frame& frame, const Target& target, const std::vect
                   TRANSFER, VK_ACCESS_2_TRANSFER_WRITE_BIT);
     const VkImageSubresourceRange whole{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
     vkCmdClearColorImage(commands, target.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &BACKDROP, 1, &whole);
-    // Makes the copy of the layers wait for the clear and for the writes of the view's frames.
+    // The copy of the layers must wait for the clear and for the writes of the view's frames.
     memory_barrier(commands, WORK, WRITES, TRANSFER, VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT);
     draw_layers(commands, target.image, layers, origin);
-    // The view's next frames must wait for the copy before they write: their graphs do not know this reader. The
-    // barrier also makes earlier writes visible. This costs nothing here and avoids false reports of validation
-    // (1.3.239): when an image is acquired, validation again counts as in flight all work that was in flight when the
+    // The view's next frames must not write before this copy has read: their render graphs do not know about the copy.
+    // The barrier also makes earlier writes visible. That costs nothing here, and avoids false reports of validation
+    // (1.3.239): when an image is acquired, validation counts all work as in flight again that was in flight when the
     // image was presented, and would report reads after writes of frames that had long been waited for.
     memory_barrier(commands, WORK, WRITES, WORK, WRITES | VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_TRANSFER_READ_BIT);
     image_barrier(commands, target.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
@@ -123,8 +123,8 @@ void Swapchain::record(const Frame& frame, const Target& target, const std::vect
                                      .framebuffer = target.framebuffer,
                                      .renderArea = {{0, 0}, extent_}};
     vkCmdBeginRenderPass(commands, &pass, VK_SUBPASS_CONTENTS_INLINE);
-    // The back end grows its buffers to these totals. The totals never fall, so that a buffer that could not be
-    // allocated is requested again, instead of being used.
+    // The back end grows its buffers to these totals. The totals never decrease, so that a buffer that could not be
+    // allocated is requested again, instead of being used while too small.
     ImDrawData& drawn = *ImGui::GetDrawData();
     drawn.TotalVtxCount = max_vertices_ = std::max(max_vertices_, drawn.TotalVtxCount);
     drawn.TotalIdxCount = max_indices_ = std::max(max_indices_, drawn.TotalIdxCount);
@@ -143,8 +143,8 @@ void Swapchain::complete(Frame& frame) const
     if (!frame.done) SHVR_VK(vkCreateFence(device_.handle(), &fence, nullptr, &frame.done));
 }
 
-/// Cleans up after a failure half way. The frame's semaphore may be signalled, its fence may never be, and an image may
-/// be acquired that is never presented: destroys all of these, and discards the recorded work.
+/// Cleans up after a failure in the middle of a frame. The frame's semaphore may be signalled, its fence may never be
+/// signalled, and an acquired image may never be presented: destroys all of these, and discards the recorded work.
 void Swapchain::abandon(Frame& frame)
 {
     device_.wait_idle_or_lost();
@@ -178,7 +178,7 @@ bool Swapchain::is_ready()
 
 bool Swapchain::present(const std::vector<View::Layer>& layers, const glm::uvec2& origin, const Meanwhile& meanwhile)
 {
-    // A failure in `meanwhile` is thrown after the frame, which is submitted by then.
+    // An exception in `meanwhile` is rethrown after the frame is presented, since the frame is already submitted.
     std::exception_ptr failure;
     const Meanwhile safely = [&](double wait_ms) {
         try {
@@ -192,13 +192,13 @@ bool Swapchain::present(const std::vector<View::Layer>& layers, const glm::uvec2
     return is_shown;
 }
 
-/// Returns whether the frame has an image to draw in.
+/// Makes sure that the frame has an image to draw in. Returns false if none is available.
 bool Swapchain::prepare(Frame& frame)
 {
     glm::ivec2 size(0);
     glfwGetFramebufferSize(window_, &size.x, &size.y);
     if (size.x <= 0 || size.y <= 0) return false;
-    // If a new swapchain is out of date at once, another one is made here: no other caller retries the frame.
+    // Tries twice: a new swapchain may be out of date at once, and no caller would retry the frame.
     for (int tries = 0; tries < 2; ++tries) {
         if (!swapchain_ || size != made_for_) is_stale_ = true;
         if (is_stale_ && !create_swapchain()) return false;
@@ -209,11 +209,11 @@ bool Swapchain::prepare(Frame& frame)
     return false;
 }
 
-/// Acquires an image if there is one. Afterwards the swapchain may have to be re-created.
+/// Acquires an image if one is available. May set `is_stale_`, so that the swapchain is re-created.
 bool Swapchain::acquire(Frame& frame)
 {
-    constexpr uint64_t PATIENCE_NS = 10'000'000;  // some drivers have no image ready in a swapchain just made
-    // Like vkGetFenceStatus, but also informs validation that the frame was waited for.
+    constexpr uint64_t PATIENCE_NS = 10'000'000;  // some drivers have no image ready right after creating a swapchain
+    // Like vkGetFenceStatus, but also tells the validation layer that the frame has been waited for.
     const VkResult status = vkWaitForFences(device_.handle(), 1, &frame.done, VK_TRUE, 0);
     check(status, "vkWaitForFences");
     if (status == VK_TIMEOUT) return false;
@@ -235,7 +235,7 @@ bool Swapchain::acquire(Frame& frame)
     return true;
 }
 
-/// Compares capabilities, since some surfaces stay suboptimal however often their swapchain is re-created.
+/// Compares the capabilities, since some surfaces stay suboptimal however often their swapchain is re-created.
 bool Swapchain::surface_has_changed() const
 {
     VkSurfaceCapabilitiesKHR now{};
@@ -246,7 +246,7 @@ bool Swapchain::surface_has_changed() const
            now.currentTransform != made_of_.currentTransform;
 }
 
-/// Draws and presents the image that was acquired; false if it is lost.
+/// Draws into the acquired image and presents it. Returns false if the image is lost.
 bool Swapchain::show(Frame& frame, const std::vector<View::Layer>& layers, const glm::uvec2& origin,
                      const Meanwhile& meanwhile)
 {
@@ -292,8 +292,8 @@ bool Swapchain::show(Frame& frame, const std::vector<View::Layer>& layers, const
     return shown != VK_ERROR_OUT_OF_DATE_KHR;
 }
 
-/// Presents, and measures how long that waits for the screen: where each image is shown in turn, many drivers wait
-/// until there is room for another one.
+/// Presents, and measures how long that waits for the screen: where images are shown in turn, many drivers wait until
+/// the queue has room.
 VkResult Swapchain::hand_to_screen(const VkPresentInfoKHR& info)
 {
     const auto begun = std::chrono::steady_clock::now();
@@ -304,11 +304,11 @@ VkResult Swapchain::hand_to_screen(const VkPresentInfoKHR& info)
     return result;
 }
 
-/// Expected wait for the screen when the next image is presented; 0: too short to be used.
+/// Returns the expected wait for the screen at the next presentation; 0 if it is too short to be used for work.
 double Swapchain::expected_wait_ms() const
 {
-    constexpr double MIN_MS = 1.0, MAX_MS = 50.0;  // longer waits, of a screen that is slow at present, count as MAX_MS
-    // The shortest of the last waits: one long wait proves nothing. If newer images replace older ones, none waits.
+    constexpr double MIN_MS = 1.0, MAX_MS = 50.0;  // longer waits, when the screen is slow for a while, count as MAX_MS
+    // Uses the shortest of the last waits, since a single long wait may be an exception. Mailbox mode never waits.
     const double wait_ms = std::min(*std::ranges::min_element(waits_ms_), MAX_MS);
     return mode_ == VK_PRESENT_MODE_FIFO_KHR && wait_ms >= MIN_MS ? wait_ms : 0.0;
 }

@@ -14,7 +14,7 @@ namespace shvr::ui {
 
 namespace {
 
-constexpr double DEGREES_PER_HEIGHT = 180.0;  ///< a drag across the window rotates the view by 180 degrees
+constexpr double DEGREES_PER_HEIGHT = 180.0;  ///< a drag over the window's height turns the view by this angle
 constexpr double DOUBLE_CLICK_PIXELS = 5.0;
 constexpr double ZOOM_PER_STEP = 1.12;
 
@@ -66,14 +66,14 @@ glm::uvec2 Viewport::pane_pixels(const Model& model) const
     return pane_ < model.panes.size() ? glm::max(model.panes[pane_].pane.pixels(), glm::uvec2(1)) : glm::uvec2(1);
 }
 
-/// Returns the mouse position in pixels of the pane under the mouse.
+/// Returns a mouse position in pixels of the pane under the mouse.
 glm::dvec2 Viewport::in_pane(const glm::dvec2& at, const Model& model) const
 {
     const glm::uvec2 origin = pane_ < model.panes.size() ? model.panes[pane_].pane.box.begin : glm::uvec2(0);
     return at - glm::dvec2(layout_.begin + origin);
 }
 
-/// Returns the effect of a turning drag in the pane.
+/// Returns the gesture that a turning drag starts in the pane.
 Viewport::Gesture Viewport::turning(const Model& model) const
 {
     switch (kind_of_pane(model)) {
@@ -83,7 +83,7 @@ Viewport::Gesture Viewport::turning(const Model& model) const
     }
 }
 
-/// Measures from press to press, as for widgets (ui/mouse_feed.h), so that a double click in a long frame remains one.
+/// Measures between presses, as widgets do (ui/mouse_feed.h), so that a double click during a long frame is recognised.
 bool Viewport::is_double(double earliest_s, const glm::dvec2& at) const
 {
     return last_click_s_ && earliest_s - *last_click_s_ < MouseFeed::DOUBLE_CLICK_S &&
@@ -103,7 +103,7 @@ void Viewport::press(const ButtonEvent& event, const When& when, const Model& mo
     last_ = pressed_ = event.at;
     was_elsewhere_ = false;
     if (event.button == GLFW_MOUSE_BUTTON_RIGHT && turns) {
-        // The pointer may have moved here without events since the probe followed it last.
+        // The pointer may have moved since the probe last followed it, without an event.
         if (!is_map && !was_here) actions.emplace_back(ProbeTo{pane_, in_pane(event.at, model), true});
         gesture_ = Gesture::paint;
         actions.emplace_back(Paint{true});
@@ -143,7 +143,7 @@ void Viewport::press_left(const ButtonEvent& event, const When& when, const Mode
             pressed_node_ = trace_hit(model.trace, model.panes[pane_].pane, in_pane(event.at, model), model.volume,
                                       groups_in_pane(model.session, model.panes[pane_].pane))
                                 .node;
-        // In the turn tool a double click differs from two clicks, and acts at once.
+        // With the turn tool, a double click has its own function, which acts at once and cancels the pending click.
         if (model.tool() == Tool::turn && is_second_) {
             click_.reset();
             actions.emplace_back(ProbeOnto{pane_, in_pane(event.at, model)});
@@ -191,7 +191,7 @@ void Viewport::wait(double time_s, Actions& actions)
 
 // ---- Motion ---------------------------------------------------------------------------------------------------------
 
-/// Begins a drag: the pointer has moved too far from the press for a click.
+/// Begins a drag, once the pointer has moved too far from the press for a click.
 void Viewport::begin_drag(const Model& model, Actions& actions)
 {
     if (!pressed_node_ || !model.trace.nodes().contains(*pressed_node_)) {
@@ -199,7 +199,7 @@ void Viewport::begin_drag(const Model& model, Actions& actions)
         return;
     }
     gesture_ = Gesture::node;
-    // A node of a selected segment takes the segment along.
+    // Dragging a node of a selected segment moves the whole selection.
     const std::vector<uint32_t>& selected = model.trace.selection().nodes;
     if (selected.size() < 2 || std::ranges::find(selected, *pressed_node_) == selected.end())
         actions.emplace_back(SelectOp{.near = {}, .number = pressed_node_, .within_voxels = {}});
@@ -207,8 +207,8 @@ void Viewport::begin_drag(const Model& model, Actions& actions)
     actions.emplace_back(DragNode{true});
 }
 
-/// Makes the probe follow a pointer without a pressed button. In slices the probe stays in place with tools that point
-/// (select, measure), since otherwise the other slices would follow every motion.
+/// Makes the probe follow the pointer while no button is held. With pointing tools (select, measure), the probe stays
+/// in place in slices: otherwise the other slices would follow every motion.
 void Viewport::hover(const Model& model, bool jumps, Actions& actions)
 {
     const Tool tool = model.tool();
@@ -235,7 +235,7 @@ void Viewport::follow(const MoveEvent& event, bool ui_has_mouse, const Model& mo
     if (gesture_ == Gesture::press && glm::distance(event.at, pressed_) > CLICK_PIXELS) begin_drag(model, actions);
     const glm::dvec2 pixel = in_pane(event.at, model);
     switch (gesture_) {
-        // The object follows the mouse, so the eye moves the opposite way.
+        // The object follows the mouse, so the eye moves in the opposite direction.
         case Gesture::turn:
             actions.emplace_back(Orbit{-DEGREES_PER_HEIGHT * heights.x, DEGREES_PER_HEIGHT * heights.y});
             break;
@@ -259,7 +259,7 @@ void Viewport::scroll(const ScrollEvent& event, const Model& model, Actions& act
     pane_ = pane_at(event.at, model);
     const Pane::Kind kind = kind_of_pane(model);
     const bool is_slice = kind == Pane::Kind::slice, has_control = event.mods & GLFW_MOD_CONTROL;
-    if (is_slice != has_control)  // in a slice Ctrl zooms, elsewhere it pushes
+    if (is_slice != has_control)  // the wheel pushes in slices, and with Ctrl elsewhere; otherwise it zooms
         actions.emplace_back(PushProbe{pane_, event.steps});
     else if (kind == Pane::Kind::map)
         actions.emplace_back(Move{{0.0, 0.0, HEIGHTS_PER_STEP * event.steps}});

@@ -36,18 +36,18 @@ public:
 
     /// Handles all events except keys. `ui_has_mouse`: Dear ImGui uses the mouse.
     void handle(const InputEvent& event, const Model& model, bool ui_has_mouse, Actions& actions);
-    /// Handles timeouts: a click of the turn tool selects once it can no longer become a double click.
+    /// Handles timeouts: a click with the turn tool selects once it can no longer become a double click.
     void wait(double time_s, Actions& actions);
     /// Returns whether a timeout is pending.
     bool is_waiting() const { return click_.has_value(); }
-    /// Returns the mouse position over the picture; null: elsewhere.
+    /// Returns the position of the mouse over the picture; null if the mouse is elsewhere.
     const std::optional<Pointer>& pointer() const { return pointer_; }
     bool contains(const glm::dvec2& at) const;
 
 private:
     enum class Gesture {
         none,
-        press,  ///< may become a click or a drag
+        press,  ///< may still become a click or a drag
         turn,
         move,
         move_in_map,
@@ -58,7 +58,7 @@ private:
         contrast
     };
     struct When {
-        double earliest_s = 0.0, latest_s = 0.0;  ///< the event happened between the two times
+        double earliest_s = 0.0, latest_s = 0.0;  ///< the event happened between these two times
     };
     void press(const ButtonEvent& event, const When& when, const Model& model, Actions& actions);
     void press_left(const ButtonEvent& event, const When& when, const Model& model, Actions& actions);
@@ -77,21 +77,21 @@ private:
 
     Layout layout_;
     Gesture gesture_ = Gesture::none;
-    size_t pane_ = 0;  ///< pane under the mouse, or where the gesture began
+    size_t pane_ = 0;  ///< pane under the mouse or, during a gesture, the pane where it began
     int button_ = 0;
     glm::dvec2 last_{0.0}, pressed_{0.0};
     std::optional<uint32_t> pressed_node_;
-    bool was_elsewhere_ = true;  ///< the pointer was outside before the next motion
+    bool was_elsewhere_ = true;  ///< the pointer was outside the picture before the next motion
     std::optional<Pointer> pointer_;
     double pressed_s_ = 0.0;              ///< latest time of the left button's press
-    bool is_second_ = false;              ///< set if that press is the second of a double click
+    bool is_second_ = false;              ///< the press is the second of a double click
     std::optional<double> last_click_s_;  ///< press time of the last click
     glm::dvec2 last_click_{0.0};
     struct Click {
         SelectAt what;
         double pressed_s = 0.0;
     };
-    std::optional<Click> click_;  ///< click of the turn tool that has not been carried out yet
+    std::optional<Click> click_;  ///< click with the turn tool that may still become a double click
 };
 
 }  // namespace shvr::ui

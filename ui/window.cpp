@@ -24,8 +24,8 @@ std::string glfw_error()
     return description ? description : "no reason given";
 }
 
-/// GLFW 3.4 prefers Wayland, where a window knows neither its position nor its screen, and where only the compositor
-/// may move the pointer, as tests must. With X11 (on Wayland: Xwayland), all versions behave alike.
+/// GLFW 3.4 prefers Wayland. There a window does not know its position or screen, and only the compositor can move the
+/// pointer, which tests need to do. With X11 (Xwayland on Wayland), all GLFW versions behave alike.
 bool start_glfw()
 {
 #ifdef GLFW_PLATFORM  // since 3.4
@@ -36,7 +36,7 @@ bool start_glfw()
     return glfwInit() == GLFW_TRUE;
 }
 
-/// Returns the screen that shows this point or, if there is none, the main screen.
+/// Returns the screen that contains this point or, if there is none, the primary screen.
 GLFWmonitor* monitor_of(const glm::ivec2& point)
 {
     int count = 0;
@@ -57,19 +57,19 @@ GLFWmonitor* monitor_of(const glm::ivec2& point)
 struct Window::Input {
     GLFWwindow* window = nullptr;
     std::vector<InputEvent> events;
-    glm::ivec2 place{0}, size{0};  ///< position and size of the window before full screen
+    glm::ivec2 place{0}, size{0};  ///< position and size of the window before it became full screen
     std::vector<int> pressed;      ///< keys, since the last frame
     MouseFeed mouse;
-    double asked_s = 0.0, answered_s = 0.0;  ///< when the last wait for events began, and when it ended
+    double asked_s = 0.0, answered_s = 0.0;  ///< when the last wait for events began and ended
 
-    /// Returns the earliest time of an event (GLFW reports none): events present at once came since the last wait.
+    /// Returns the earliest possible time of an event, since GLFW reports none: an event available at once may be old.
     double earliest_s() const
     {
         constexpr double AT_ONCE_S = 0.005;
         const double now = glfwGetTime();
         return now - asked_s < AT_ONCE_S ? answered_s : now;
     }
-    bool frame_is_open = false;  ///< an interface frame was begun and not yet rendered
+    bool frame_is_open = false;  ///< an interface frame was begun, and is not rendered yet
 
     static Input& of(GLFWwindow* window) { return *static_cast<Input*>(glfwGetWindowUserPointer(window)); }
     template <class Event>
@@ -77,8 +77,8 @@ struct Window::Input {
     {
         of(window).events.push_back({std::move(event), glfwGetTime(), of(window).earliest_s()});
     }
-    /// The mouse position at the time of the event: GLFW reports only the current one, which is too late if one
-    /// iteration of the loop receives a whole gesture.
+    /// The mouse position at the time of the present event. GLFW reports only the current position, which is too late
+    /// if an iteration of the loop receives a whole gesture.
     std::optional<glm::dvec2> last_cursor;
     static glm::dvec2 cursor(GLFWwindow* window)
     {
@@ -90,7 +90,7 @@ struct Window::Input {
         }
         return *last;
     }
-    /// Factor from screen coordinates to pixels: they differ on some HiDPI systems.
+    /// Converts screen coordinates to pixels, which differ on some HiDPI systems.
     static glm::dvec2 in_pixels(GLFWwindow* window, const glm::dvec2& at)
     {
         glm::ivec2 size(1), pixels(1);
@@ -107,7 +107,7 @@ struct Window::Input {
                (down(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT) ? GLFW_MOD_SHIFT : 0) |
                (down(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT) ? GLFW_MOD_ALT : 0);
     }
-    /// Call after Dear ImGui has installed its callbacks: replaces them by our own (Window::tell_ui).
+    /// Call after Dear ImGui has installed its callbacks. Replaces them; Window::tell_ui passes events on to it.
     void listen_to_keys() const
     {
         glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
@@ -311,8 +311,8 @@ void Window::begin_ui()
     if (std::exchange(input_->frame_is_open, true)) ImGui::EndFrame();  // the last frame failed before it was presented
     Swapchain::begin_ui();
     ImGui_ImplGlfw_NewFrame();
-    tell_imgui_buttons(input_->window, input_->mouse.next());  // one change of the buttons, where it happened
-    // A key that went down and up again during the last frame, which may have been long, still counts as pressed.
+    tell_imgui_buttons(input_->window, input_->mouse.next());  // one button change per frame, at its own position
+    // A key that was pressed and released during the last frame, which may have been long, still counts as pressed.
     begin_imgui_frame(input_->window, std::exchange(input_->pressed, {}), Input::mods(input_->window));
 }
 

@@ -28,7 +28,7 @@ struct KeyEvent {
     int mods = 0;  ///< GLFW_MOD_*
     bool pressed = false;
     bool repeated = false;
-    std::string character{};  ///< character in the user's layout, without modifiers; empty: none, or unknown
+    std::string character{};  ///< the key's character in the user's layout, without modifiers; empty: none, or unknown
 };
 /// A typed character, whatever its keys.
 struct TextEvent {
@@ -57,7 +57,7 @@ struct DamageEvent {};
 struct InputEvent {
     std::variant<KeyEvent, TextEvent, ButtonEvent, MoveEvent, ScrollEvent, DropEvent, DamageEvent> what;
     double time_s = 0.0;         ///< time of receipt
-    double earliest_s = time_s;  ///< earliest time of the event: input during a long frame is received later
+    double earliest_s = time_s;  ///< earliest time of the event, since a long frame delays input
 };
 
 class Swapchain;
@@ -70,7 +70,7 @@ public:
     Window(const Window&) = delete;
     Window& operator=(const Window&) = delete;
 
-    /// Requirements for a device that presents to this window.
+    /// Returns what a device needs in order to present to this window.
     gpu::DeviceOptions device_needs() const;
     void attach(gpu::Device& device, gpu::Memory& memory);
     void detach();
@@ -82,36 +82,36 @@ public:
     glm::uvec2 pixels() const;
     double content_scale() const;  ///< 2 on a HiDPI screen; changes when the window moves to another screen
     double now_s() const;
-    /// Covers the whole screen that the window is on, or restores the window.
+    /// Covers the whole screen that shows the window, or restores the window.
     void set_full_screen(bool is_full);
 
     /// Waits for events, at most `timeout_s` (0: not at all), and returns them.
     std::vector<InputEvent> wait_events(double timeout_s);
-    /// Passes a key or a character to the interface in one of its next frames. Events are passed in order, so that none
-    /// overtakes an earlier event.
+    /// Passes a key or a character to the interface in one
+    /// of its next frames. The order of events is preserved.
     void tell_ui(const InputEvent& event);
     /// Returns whether a key is held down.
     bool is_down(int key) const;
-    /// Returns whether presses of buttons are still queued for the interface: each frame takes one.
+    /// Returns whether presses of buttons are still queued for the interface, which gets one per frame.
     bool has_clicks() const;
 
     /// Layers must have blue first (View::Options).
     bool swaps_red_and_blue() const;
 
-    /// Returns whether a frame can be drawn and shown without waiting. It may stay false while the window is hidden:
-    /// ask again a little later. Never waits.
+    /// Returns whether a frame can be drawn and shown without waiting. May stay false while the window is hidden: then
+    /// call again a little later. Never waits.
     bool is_ready();
     void begin_ui();
-    /// Uploads Dear ImGui's fonts again, before the next frame. Waits for the device; rare.
+    /// Uploads Dear ImGui's fonts again, before the next frame. Slow, since it waits for the device; rarely needed.
     void renew_fonts();
     /// Draws the layers with their upper left corner at `origin`, then the interface over them, and shows the frame.
-    /// Returns false if there is nothing to draw on (minimised, hidden), or if the frame was lost and must be drawn
-    /// again. Calls `meanwhile`, unless that function is empty, with the expected wait for the screen: after the frame
-    /// is submitted to the device, and before the wait begins.
+    /// Returns false if no image is available to draw on (minimised, hidden), or if the frame was lost and must be
+    /// drawn again. Calls `meanwhile`, unless it is empty, with the expected wait for the screen: after the frame is
+    /// submitted to the device, and before the wait begins.
     bool present(const std::vector<View::Layer>& layers, const glm::uvec2& origin,
                  const std::function<void(double wait_ms)>& meanwhile);
 
-    /// Return the number of frames submitted to the device, and the number that it has finished and shown. Never wait.
+    /// Return the number of frames submitted to the device, and of frames finished and shown. Neither function waits.
     uint64_t frames_presented() const;
     uint64_t frames_done() const;
 

@@ -1,6 +1,6 @@
 #pragma once
-// A query to the file system, answered in the background. A network that does not respond takes minutes, so the main
-// thread never waits for it, not even at exit: answers that are no longer needed are dropped.
+// A query to the file system, answered in the background. A network that does not respond may take minutes to fail, so
+// the main thread never waits for an answer, not even at exit: a destroyed query drops its answer.
 
 #include <chrono>
 #include <condition_variable>
@@ -13,14 +13,14 @@
 
 namespace shvr::ui {
 
-/// Answers that arrive within this time are used in the same frame of the window.
+/// Patience of callers that want a fast answer in the same frame of the window.
 inline constexpr std::chrono::milliseconds AT_ONCE{20};
 
 template <class Answer>
 class Asked {
 public:
     Asked() = default;
-    /// Calls `ask`, which must own all that it uses, on a thread of its own.
+    /// Calls `ask` on a thread of its own. `ask` must own all objects that it uses, since it may outlive the caller.
     template <class Ask>
     explicit Asked(Ask ask) : state_(std::make_shared<State>())
     {
@@ -28,7 +28,7 @@ public:
             Answer answer{};
             try {
                 answer = ask();
-            } catch (const std::exception&) {  // out of memory: treated like an empty answer
+            } catch (const std::exception&) {  // out of memory: the answer is a default-constructed one
             }
             const std::scoped_lock lock(state->mutex);
             state->answer = std::move(answer);
@@ -37,7 +37,7 @@ public:
     }
 
     bool is_pending() const { return state_ != nullptr; }
-    /// Returns the answer, once, if it arrives within `patience`.
+    /// Returns the answer if it arrives within `patience`; each answer is returned once.
     std::optional<Answer> take(std::chrono::milliseconds patience = {})
     {
         if (!state_) return std::nullopt;

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Maximum number of names that a completion of a path examines.
+/// Maximum number of names that are examined to complete a path.
 constexpr size_t MAX_COMPLETED = 200'000;
 
 char lower(char c)
@@ -107,7 +107,7 @@ bool FileList::is_shown(const Entry& entry) const
     if (!shows_hidden_ && entry.name.starts_with('.')) return false;
     if (entry.is_folder || shows_all_files_) return true;
     const std::string name = lower_case(entry.name);
-    // The .mask.json of a mask is taken along with the mask, so it has no row; DICOM files often have no suffix.
+    // A mask's .mask.json gets no row, since it is opened together with the mask. DICOM files often have no suffix.
     return is_volume_name(entry.name) || (name.ends_with(".json") && !name.ends_with(".mask.json")) ||
            fs::path(entry.name).extension().empty();
 }
@@ -182,7 +182,7 @@ fs::path typed_path(std::string_view typed, const fs::path& folder)
     fs::path path(typed);
     if (typed == "~" || typed.starts_with("~/")) path = home_folder() / typed.substr(std::min<size_t>(2, typed.size()));
     path = (folder / path).lexically_normal();
-    // A slash at the end would make the last part of the path an empty name.
+    // Removes a slash at the end, which would make the path's last component an empty name.
     return path.has_filename() || path == path.root_path() ? path : path.parent_path();
 }
 
@@ -217,7 +217,7 @@ Verdict verdict_on(const fs::path& path, Wanted wanted, bool enters_folders)
     const fs::file_status status = fs::status(path, error);
     const bool is_folder = fs::is_directory(status);
     if (wanted == Wanted::scan) {
-        // A path within an archive does not exist in the file system.
+        // A path within an archive is no entry of the file system, so its absence there is no error.
         if (!fs::exists(status) && !is_within_archive(path)) {
             const bool is_gone = !error || error == std::errc::no_such_file_or_directory;
             return {false,
@@ -255,7 +255,7 @@ std::vector<Place> places(const fs::path& open, const std::vector<fs::path>& rec
         const std::string name = folder.filename().string();
         found.push_back({name.empty() ? folder.string() : name, folder});
     };
-    // The files of a project lie in a subfolder of the folder that the user calls the project.
+    // A project's files lie in a subfolder: the project's folder, as the user knows it, is the parent.
     const fs::path whole = open.empty() ? open : fs::absolute(open).lexically_normal();
     if (whole.parent_path().filename() == "shvr")
         add(whole.parent_path().parent_path().parent_path());

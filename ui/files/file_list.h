@@ -1,7 +1,7 @@
 #pragma once
-// Rows of a file chooser: the files of a folder, their kinds by name, and the meaning of a typed path. A folder
-// is read in the background (folder_reader.h); details of a file are requested once its row is shown. Paths and
-// names in UTF-8. Not thread-safe.
+// The rows of a file chooser: the files of a folder and their kinds by name; and the meaning of a typed path. A folder
+// is read in the background (folder_reader.h); details of a file are requested once its row is shown. Paths and names
+// are in UTF-8. Not thread-safe.
 
 #include <filesystem>
 #include <memory>
@@ -19,29 +19,29 @@ class FileList {
 public:
     using Entry = FolderEntry;
 
-    /// Starts to list `folder`, and waits an unnoticeable time (AT_ONCE) for the list. See `failure`.
+    /// Starts to list `folder`, and waits for the list for a time too short to be noticed (AT_ONCE). See `failure`.
     void enter(const std::filesystem::path& folder, size_t at_once = FolderReader::READ_AT_ONCE);
-    /// Takes entries read since the last call. Returns whether more will follow.
+    /// Takes the entries read since the last call. Returns whether more entries will follow.
     bool read_on();
     bool is_reading() const { return is_reading_; }
     /// Returns whether a request is unanswered.
     bool is_waiting() const { return is_reading_ || unanswered_ > 0; }
     const std::filesystem::path& folder() const { return folder_; }
-    /// Returns why the folder, or the rest of it, cannot be listed, in a sentence; empty if it can be.
+    /// Returns why the folder, or the rest of it, cannot be listed, as a sentence; empty if there was no error.
     const std::string& failure() const { return failure_; }
 
-    /// Selects which names become rows. `all_files`: also files whose names do not look like files that SHVR opens.
+    /// Selects which names get rows. `all_files`: also files whose names do not look like a format that SHVR opens.
     void show(bool all_files, bool hidden);
     /// Returns the number of rows. Folders come first, then files; "slice2" comes before "slice10".
     size_t size() const { return rows_.size(); }
     const Entry& at(size_t row) const { return entries_[rows_[row]]; }
     size_t left_out() const { return entries_.size() - rows_.size(); }
-    /// Returns details of a row. The first call requests them, and a later `read_on` delivers them; until
-    /// then they are unknown.
+    /// Returns the details of a row. They are unknown until a `read_on` after the first call for that row delivers
+    /// them.
     const FileDetails& details(size_t row);
 
     std::optional<size_t> row_of(std::string_view name) const;
-    /// Returns the next row from `from` on, with wrap-around, whose name begins with `text`, ignoring case.
+    /// Returns the first row from `from` on, with wrap-around, whose name begins with `text`, ignoring case.
     std::optional<size_t> row_beginning(std::string_view text, size_t from) const;
 
 private:
@@ -59,16 +59,16 @@ private:
     std::unordered_map<std::string, FileDetails> details_;
 };
 
-/// Compares names, with digits in them compared as numbers; upper and lower case decide last.
+/// Compares names in natural order: numbers by value, letters without case, which only breaks ties.
 bool is_naturally_before(std::string_view a, std::string_view b);
 std::string size_text(int64_t bytes);  ///< "1.4 GB": 1000 bytes are 1 kB
 
 /// Returns $HOME, or the root if it is unknown.
 std::filesystem::path home_folder();
 /// Returns the path that a typed text means: "~" is home, surrounding quotes and spaces are dropped, and relative paths
-/// start at `folder`. The result has no "." or "..".
+/// are relative to `folder`. The result has no "." or "..".
 std::filesystem::path typed_path(std::string_view typed, const std::filesystem::path& folder);
-/// Returns the typed text, completed as far as all matching names agree; a single matching folder ends in "/".
+/// Returns the typed text with the common beginning of all matching names; a single matching folder gets a slash.
 std::string completed(const std::string& typed, const std::filesystem::path& folder);
 
 enum class Wanted {
@@ -77,24 +77,24 @@ enum class Wanted {
     new_file,  ///< name of a file that does not exist yet
     any,       ///< a file or a folder, existing or not
 };
-/// Result of the check of a chosen path.
+/// Result of checking a chosen path.
 struct Verdict {
     bool enters = false;  ///< true: a folder to enter instead
     std::string failure;  ///< why the path is refused, in a sentence; empty: the path is accepted
 };
-/// `enters_folders`: folders are entered unless they are opened as a whole. Asks the file system.
+/// Checks a chosen path in the file system. `enters_folders`: folders are entered unless they are opened as a whole.
 Verdict verdict_on(const std::filesystem::path& path, Wanted wanted, bool enters_folders);
 
-/// Returns the names of the formats that a chosen file may have, "TIFF, NRRD and DICOM" with the conjunction "and".
+/// Returns the formats that a chosen file may have, joined by commas and the conjunction: "TIFF, NRRD and DICOM".
 std::string names_of_formats(std::string_view conjunction);
-/// Returns whether the path leads into a zipped volume, as scan.ozx/0 does.
+/// Returns whether the path leads into a zipped volume, as scan.ozx/0 does into scan.ozx.
 bool is_within_archive(const std::filesystem::path& path);
 
 struct Place {
     std::string name;
     std::filesystem::path folder;
 };
-/// Returns home, the open document's folder (empty path: none), and the folders of recently opened paths, each once.
+/// Returns home, the open document's folder (empty path: none) and the folders of recent paths, without duplicates.
 std::vector<Place> places(const std::filesystem::path& open, const std::vector<std::filesystem::path>& recent);
 
 }  // namespace shvr::ui

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Number of names sampled to determine a folder's kind.
+/// Number of names that are read to determine a folder's kind.
 constexpr int SAMPLED_NAMES = 64;
 
 constexpr const char* ANNOTATION_ENDINGS[] = {".mask", ".offsets", ".graphml", ".swc", ".journal"};
@@ -69,7 +69,7 @@ const char* text_of(FileKind kind)
     return "";
 }
 
-/// Returns whether a file is a session: sessions state this at the beginning.
+/// Returns whether a file is a session, which its first bytes state.
 bool begins_as_session(const fs::path& path)
 {
     std::array<char, 256> head{};
@@ -156,7 +156,7 @@ void FolderReader::wait(std::chrono::milliseconds patience)
     shared_->changed.wait_for(lock, patience, [&] { return !shared_->news.is_reading; });
 }
 
-/// Runs on the reader's thread: lists names, answering requests in between; then answers until it is abandoned.
+/// Runs on the reader's thread: lists names and answers requests in between; then only answers, until abandoned.
 void FolderReader::read(Shared& shared, size_t at_once)
 {
     std::error_code error, ignored;
@@ -166,7 +166,7 @@ void FolderReader::read(Shared& shared, size_t at_once)
     for (bool is_reading = true; is_reading;) {
         std::vector<FolderEntry> entries;
         for (size_t most = at_once; most > 0 && next != fs::directory_iterator(); --most) {
-            // The kind comes with the name on most file systems, except behind a link.
+            // Most file systems deliver the kind of an entry with its name; only links need another query.
             entries.push_back({next->path().filename().string(), next->is_directory(ignored)});
             next.increment(error);
             if (!error) continue;
@@ -196,7 +196,7 @@ void FolderReader::read(Shared& shared, size_t at_once)
     }
 }
 
-/// Answers the oldest request. Returns false if there is none, or if the reader was abandoned.
+/// Answers the oldest request. Returns false if no request is pending, or if the reader was abandoned.
 bool FolderReader::answer(Shared& shared)
 {
     std::string name;

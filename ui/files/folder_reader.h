@@ -1,6 +1,6 @@
 #pragma once
-// Reads the names in a folder, and requested details, on a thread of its own; a folder that does not answer
-// blocks no caller, and its results are dropped with the reader. One thread uses a reader.
+// Reads the names in a folder, and requested details, on a thread of its own. A folder that does not answer therefore
+// blocks no caller, and its results are dropped with the reader. Each reader is used by one thread.
 
 #include <chrono>
 #include <condition_variable>
@@ -14,7 +14,7 @@
 
 namespace shvr::ui {
 
-/// The kinds before `folder` are opened as a whole, as a volume or a project.
+/// Kinds of files and folders; those before `folder` are opened as a whole, as a volume or a project.
 enum class FileKind { project, zarr, dicom_series, slices, folder, volume, session, annotation, other };
 inline bool is_opened_whole(FileKind kind)
 {
@@ -37,7 +37,7 @@ struct FolderEntry {
 
 class FolderReader {
 public:
-    /// Names that are listed between two checks for requests: a few milliseconds.
+    /// Number of names listed between two checks for requests; they take a few milliseconds.
     static constexpr size_t READ_AT_ONCE = 4096;
 
     explicit FolderReader(std::filesystem::path folder, size_t at_once = READ_AT_ONCE);
@@ -47,13 +47,13 @@ public:
     struct News {
         std::vector<FolderEntry> entries;
         std::vector<std::pair<std::string, FileDetails>> details;
-        std::string failure;  ///< why the folder, or the rest of it, cannot be listed, in a sentence; or empty
+        std::string failure;  ///< why the folder, or the rest of it, cannot be listed, as a sentence; empty: no error
         bool is_reading = true;
     };
     /// Returns results since the last call.
     News take();
     void ask_about(std::string name);
-    /// Waits until all names are read, or for `patience`.
+    /// Returns once all names are read, or after `patience`.
     void wait(std::chrono::milliseconds patience);
 
 private:

@@ -1,5 +1,5 @@
 #pragma once
-// Colours in linear light, edited by Dear ImGui in sRGB. Between Window::begin_ui and Window::present, main thread.
+// Edits colours stored in linear light as sRGB. Between Window::begin_ui and Window::present, main thread.
 
 #include <imgui/imgui.h>
 #include <glm/glm.hpp>
@@ -8,7 +8,7 @@ namespace shvr::ui {
 
 ImVec4 encoded(const glm::dvec3& linear, float alpha = 1.0f);
 glm::dvec3 decoded(const float* srgb);
-/// Draws a square that opens a colour picker. Returns whether the colour was changed.
+/// Draws a coloured square that opens a colour picker. Returns whether the colour was changed.
 bool color_field(const char* label, glm::dvec3& linear, ImGuiColorEditFlags flags = ImGuiColorEditFlags_NoInputs);
 
 }  // namespace shvr::ui

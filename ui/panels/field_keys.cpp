@@ -9,7 +9,7 @@ namespace shvr::ui {
 namespace {
 
 constexpr int FRAMES_TO_ANSWER = 2;
-constexpr int PATIENCE_FRAMES = 7;  ///< a field behind a dialog never gets the keyboard
+constexpr int PATIENCE_FRAMES = 7;  ///< frames after which to give up: a field behind a dialog never gets the keyboard
 int awaited_in_frame = -1;          ///< last frame in which a field awaited the keyboard
 
 }  // namespace
@@ -17,7 +17,7 @@ int awaited_in_frame = -1;          ///< last frame in which a field awaited the
 void FieldKeys::before_field(bool are_asked_for)
 {
     const int frame = ImGui::GetFrameCount();
-    if (std::exchange(last_frame_, frame) + 1 < frame) {  // the field was gone meanwhile, and its state was lost
+    if (std::exchange(last_frame_, frame) + 1 < frame) {  // the field was not drawn meanwhile, so it lost its state
         awaited_since_ = -1;
         early_.clear();
     }
@@ -26,14 +26,14 @@ void FieldKeys::before_field(bool are_asked_for)
         are_here_ = false;
     }
     if (!are_awaited()) return;
-    // Dear ImGui forgets a request made in the frame in which a dialog ends.
+    // Repeats the request, since Dear ImGui drops a request made in the frame in which a dialog closes.
     if (!are_here_ && (frame - awaited_since_) % FRAMES_TO_ANSWER == 0) {
         ImGui::SetWindowFocus();
         ImGui::SetKeyboardFocusHere();
     }
     ImVector<ImWchar>& typed = ImGui::GetIO().InputQueueCharacters;
     early_.insert(early_.end(), typed.begin(), typed.end());
-    typed.resize(0);  // in the frame in which a field gets the keyboard, it may ignore text
+    typed.resize(0);  // a field may ignore text in the frame in which it gets the keyboard
     if (!are_here_ && frame - awaited_since_ <= PATIENCE_FRAMES) return;
     awaited_since_ = -1;
     for (const ImWchar character : std::exchange(early_, {}))

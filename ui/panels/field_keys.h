@@ -1,7 +1,7 @@
 #pragma once
-// Tracks the owner of the keyboard. Dear ImGui (1.86) gives the keyboard to a field some frames after the request, and
-// reports a frame late that a field has got it or released it. During a heavy picture a frame takes long enough to type
-// in: text typed meanwhile would be lost, or act as shortcuts. Main thread.
+// Tracks which widget has the keyboard. Dear ImGui (1.86) gives the keyboard to a field some frames after the request,
+// and reports with a frame's delay that a field has got or released it. The frames of a heavy picture are long enough
+// to type in: text typed meanwhile would be lost, or act as shortcuts. Main thread.
 
 #include <vector>
 
@@ -9,27 +9,27 @@
 
 namespace shvr::ui {
 
-/// Passes the keyboard to one field, with all text typed in the meantime. Between Window::begin_ui and
+/// Gives the keyboard to one field, with all text typed since the request. Between Window::begin_ui and
 /// Window::present.
 class FieldKeys {
 public:
-    /// Call before the field. `are_asked_for`: requests the keyboard for it from now on.
+    /// Call before drawing the field. `are_asked_for`: requests the keyboard for the field.
     void before_field(bool are_asked_for);
-    /// Call when the field is the item drawn last.
+    /// Call directly after drawing the field, which must be Dear ImGui's last item.
     void after_field();
     /// Stores a character typed before the field got the keyboard.
     void type(ImWchar character) { early_.push_back(character); }
-    /// Returns whether the keyboard was requested, and the field does not have it yet.
+    /// Returns whether the field was promised the keyboard and does not have it yet.
     bool are_awaited() const { return awaited_since_ >= 0; }
 
 private:
     int awaited_since_ = -1;  ///< frame of the request; -1: not awaited
     int last_frame_ = -1;     ///< last frame in which the field was drawn
-    bool are_here_ = false;   ///< the field has the keyboard, but not yet the characters typed before
+    bool are_here_ = false;   ///< the field has the keyboard, but has not yet received the characters typed before
     std::vector<ImWchar> early_;
 };
 
-/// Returns whether keys go to a field, after the frame that was drawn last. Between frames.
+/// Returns whether keys go to a text field, according to the last drawn frame. Call between frames.
 bool field_has_keys();
 
 }  // namespace shvr::ui

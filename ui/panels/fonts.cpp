@@ -1,4 +1,4 @@
-// The font atlas: European letters, and every other character used in a text so far, from the fonts of this machine.
+// The font atlas: European letters and every other character that a text has used so far, from this machine's fonts.
 
 #include <algorithm>
 #include <cmath>
@@ -20,8 +20,8 @@ constexpr const char* FONTS[] = {"/usr/share/fonts/truetype/dejavu/DejaVuSans.tt
                                  "/usr/share/fonts/TTF/DejaVuSans.ttf",                // Arch
                                  "/usr/share/fonts/truetype/noto/NotoSans-Regular.ttf",
                                  "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf"};
-/// Fonts tried in order for missing characters. They are large, so they are read only when a rare character is
-/// needed.
+/// Fonts tried in this order for characters that the panels' font lacks. They are large, so they are read only when
+/// such a character is needed.
 constexpr const char* FALLBACKS[] = {
     "/usr/share/fonts/truetype/droid/DroidSansFallbackFull.ttf",  // fonts-droid-fallback
     "/usr/share/fonts-droid-fallback/truetype/DroidSansFallback.ttf",
@@ -73,7 +73,7 @@ void fill(ImFontAtlas& atlas, double pixels, For purpose)
         for (const char* path : FALLBACKS) add_font(atlas, path, size, true, purpose);
 }
 
-/// Returns the next character of UTF-8 text and its length in bytes; an invalid byte counts as one character.
+/// Returns the next character of a UTF-8 text and its length in bytes. An invalid byte counts as one character.
 std::pair<ImWchar, size_t> next_character(std::string_view text)
 {
     const auto byte = [&](size_t i) { return i < text.size() ? uint32_t(uint8_t(text[i])) : 0u; };

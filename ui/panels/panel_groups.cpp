@@ -1,4 +1,4 @@
-// Colour groups as a tree: their looks, locks, contents and parents.
+// Colour groups as a tree: appearance, locks, contents and parents.
 
 #include "ui/panels/panels.h"
 
@@ -43,7 +43,7 @@ void follow_trace(const Model& model)
     groups_state.in_trace = groups_in(groups_state.traced);
 }
 
-// ---- The cells of a row. Each returns whether it changed a setting, and writes the result to `settings`.
+// ---- The cells of a row. Each returns whether the user changed a setting, and stores the change in `settings`
 
 bool color_cell(const ColorGroup& look, GroupSettings& settings)
 {
@@ -74,7 +74,7 @@ bool locked_cell(bool is_locked, GroupSettings& settings)
     return changed;
 }
 
-/// Draws the switch for drawing only this group, which keeps the other groups' settings.
+/// Draws the switch for showing only this group. The other groups keep their own visibility settings.
 void solo_cell(uint8_t group, const Model& model, Actions& actions)
 {
     ImGui::TableNextColumn();
@@ -95,7 +95,7 @@ void set_parent(uint8_t group, uint8_t parent, const Model& model, Actions& acti
     set(actions, model, [&](Session& s) { s.groups[group].parent = parent; });
 }
 
-/// A group dropped onto another group's row becomes its child; a group dropped onto the unpainted row loses its parent.
+/// Drag and drop: on another group's row, a dropped group becomes its child; on the unpainted row, it loses its parent.
 void drag_and_drop(uint8_t group, const Model& model, Actions& actions)
 {
     if (group != 0 && ImGui::BeginDragDropSource()) {
@@ -191,7 +191,7 @@ void count_cell(int64_t count)
     hint("Voxels of this group.");
 }
 
-/// Draws the radius of a group's nodes or internodes, in voxels. A release of the mouse makes one step of the history.
+/// Draws the radius of a group's nodes or internodes, in voxels. The history gets one step, when the mouse is released.
 void size_cell(const char* id, uint8_t group, size_t count, double radius_units, RadiusOp::Of of, const Model& model,
                Actions& actions)
 {
@@ -227,7 +227,7 @@ void size_cells(uint8_t group, const Model& model, Actions& actions)
 
 // ---- Rows
 
-/// Draws the row for the volume without paint.
+/// Draws the row for the unpainted part of the volume.
 void unpainted_row(const GroupRow& row, const Model& model, Actions& actions)
 {
     Unpainted unpainted = model.session.unpainted;
@@ -321,7 +321,7 @@ void group_table(const Model& model, Actions& actions)
     ImGui::EndTable();
 }
 
-/// Draws a button for renaming, for users without a right mouse button or without a mouse.
+/// Draws a button that renames the group, for use without a right mouse button or without a mouse.
 void rename_button(const Model& model, Actions& actions)
 {
     const uint8_t group = model.brush().group;
@@ -340,7 +340,7 @@ void rename_button(const Model& model, Actions& actions)
     ImGui::EndPopup();
 }
 
-/// Draws the search, the button for a new group, and the choice of the values next to the name.
+/// Draws the search field, the button for a new group, and the choice of the values shown next to the names.
 void tools(const Model& model, Actions& actions)
 {
     const uint8_t next = free_group(model.session.groups, model.voxels_by_group, groups_state.in_trace);

@@ -76,7 +76,7 @@ std::string all_keys_of(const Shortcut& shortcut, const Keymap& keymap)
     return text;
 }
 
-/// Draws a button with the keys of a shortcut; after a click, the button waits for the next key.
+/// Draws a button with the keys of a shortcut. After a click on it, the next key pressed is bound to the shortcut.
 void keys_of(const Shortcut& shortcut, const Model& model, Actions& actions)
 {
     const bool waits = model.awaits_key == shortcut.id;
@@ -92,7 +92,7 @@ void keys_of(const Shortcut& shortcut, const Model& model, Actions& actions)
                : "Click, then press another key for it. Escape leaves it as it is; Delete takes the key away.");
 }
 
-/// Shows the meaning of a shortcut, other shortcuts with its keys, and how to restore the default.
+/// Shows the meaning of a shortcut, other shortcuts that have the same keys, and how to restore the default.
 void meaning_of(const Shortcut& shortcut, const Model& model, Actions& actions)
 {
     ImGui::AlignTextToFramePadding();
@@ -116,7 +116,7 @@ bool is_found(const Shortcut& shortcut, const Model& model, const std::string& t
         sentence(shortcut.name, ' ', shortcut.group, ' ', shortcut.id, ' ', all_keys_of(shortcut, model.keymap)), text);
 }
 
-/// Draws the shortcuts under headings; the table is ordered by group.
+/// Draws the shortcuts under headings, one per group; `listed` is ordered by group.
 void key_list(std::span<const Shortcut> listed, const Model& model, const std::string& text, Actions& actions)
 {
     const char* group = "";
@@ -143,7 +143,7 @@ void mouse_list(const std::string& text)
     }
 }
 
-/// Finds the first shortcut of a group near the middle, so that both columns are about equally long.
+/// Returns the index of a group's first shortcut near the middle, so that both columns are about equally long.
 size_t middle(std::span<const Shortcut> listed)
 {
     size_t at = listed.size() / 2 + std::size(GESTURES) / 2;

@@ -1,4 +1,4 @@
-// The steps of the history: the present one, undone ones, and the place of each step.
+// The steps of the history: the present step, undone steps, and where in the volume each step was made.
 
 #include <algorithm>
 #include <string>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr float MAX_HISTORY_LINES = 14.0f;
 
-/// reason why the last requested step cannot be shown; empty: it can
+/// Reason why the last requested step cannot be shown; empty: it can be shown.
 std::string why_not_shown;
 
 void show_where(const HistoryList& list, const Model& model, size_t row, Actions& actions)
@@ -63,7 +63,7 @@ void step(const HistoryList& list, const Model& model, size_t row, Actions& acti
 
 }  // namespace
 
-/// Draws the steps with the newest at the top, where the present step usually is.
+/// Draws the steps, newest first, since the present step is usually among the newest.
 void history_panel(const Model& model, Actions& actions)
 {
     const HistoryList list = history_list(model);

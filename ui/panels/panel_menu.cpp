@@ -1,4 +1,4 @@
-// Menus run the bindings of the key table, so that a key and its menu item cannot differ.
+// Menu items run the bindings of the key table, so that a key and its menu item cannot differ in effect.
 
 #include "ui/panels/panels.h"
 
@@ -35,13 +35,13 @@ bool reasoned_item(const char* name, const std::string& why)
     return is_chosen;
 }
 
-/// Draws the menu item of an action that has no key.
+/// Draws the menu item of an action that has no shortcut.
 void action_item(const char* name, const Action& action, const Model& model, Actions& actions)
 {
     if (reasoned_item(name, why_not(model, action))) actions.push_back(action);
 }
 
-/// Draws keys that act while held as buttons, since a menu item would close the menu at every step.
+/// Draws shortcuts that act while held as buttons, since choosing a menu item would close the menu at each step.
 void held_items(const char* group, const Model& model, Actions& actions)
 {
     if (!begin_menu(group, model.is_open)) return;
@@ -101,7 +101,7 @@ void edit_menu(const Model& model, Actions& actions)
 
 // ---- View
 
-/// Draws the visible range along one axis, in voxels; both ends can be dragged.
+/// Draws the visible range along one axis, in voxels. Both ends of the range can be dragged.
 void cut_range(int axis, const Model& model, Actions& actions)
 {
     const double size = std::max(double(model.volume.size[axis]), 1.0);
@@ -126,7 +126,7 @@ void cut_menu(const Model& model, Actions& actions)
     ImGui::EndMenu();
 }
 
-/// Shows a panel at its place, or hides it.
+/// Draws the menu item that shows a panel at its usual place, or hides it.
 void panel_item(const PanelRow& row, const Model& model, Actions& actions)
 {
     const bool is_shown = model.preferences.layout.place_of(row) != PanelPlace::hidden;
@@ -192,7 +192,7 @@ void view_menu(const Model& model, Actions& actions)
 
 // ---- Paint, Probe and Help
 
-/// Returns the keys of a shortcut that exists once for each of the first groups.
+/// Returns the keys of a shortcut of which a version exists for each of the first groups.
 std::string keys_of(const char* prefix, uint8_t group, const Model& model)
 {
     const Shortcut* const shortcut = shortcut_named(sentence(prefix, int(group)));
@@ -341,7 +341,7 @@ std::string reading_of(const Model& model)
     return in_words(model.reading, model.volume, group > 0 ? group_of(model.session.groups, group).name : "");
 }
 
-/// Names the hidden parts of the picture, so that the user knows why they are missing.
+/// Lists what is hidden in the picture, so that the user knows why it is missing.
 std::string hidden_in_words(const Model& model)
 {
     const ViewSettings& view = model.session.view;
@@ -364,7 +364,7 @@ void align_right(const std::string& text)
     ImGui::TextUnformatted(text.c_str());
 }
 
-/// Draws the last message, and the number of unread errors and warnings; a click shows all.
+/// Draws the last message, and the number of unread errors and warnings. A click shows all messages.
 void said(const Model& model, const std::string& right, Actions& actions)
 {
     const std::string unread = unread_in_words(model.messages);

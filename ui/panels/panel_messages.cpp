@@ -40,7 +40,7 @@ void head(const Model& model, Shown& shown)
     hint("Copies a bug report: version, device, session path, last actions and messages.");
 }
 
-/// Lists messages in columns (time, weight, text). The newest is at the bottom, and visible unless scrolled away.
+/// Lists messages in columns (time, weight, text), newest at the bottom. Follows new messages unless scrolled away.
 void list(const Model& model, Shown shown)
 {
     const ImGuiTableFlags flags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit;

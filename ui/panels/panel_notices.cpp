@@ -1,4 +1,4 @@
-// Notices before work begins: another process writes the project, or saved files were changed.
+// Notices for the user before work begins: another process is writing the project, or saved files were changed.
 
 #include <algorithm>
 #include <optional>
@@ -39,7 +39,7 @@ float end_banner()
     return height;
 }
 
-/// Lists recovered or set-aside work, until dismissed. Returns its height.
+/// Lists work that was recovered or set aside, until the user dismisses the banner. Returns its height.
 float recovered_banner(const Model& model, const glm::vec2& begin, float width, Actions& actions)
 {
     begin_banner("Recovered", begin, width);
@@ -50,7 +50,7 @@ float recovered_banner(const Model& model, const glm::vec2& begin, float width, 
     return end_banner();
 }
 
-/// Draws the banner in the upper left corner of the graphics window, as wide as needed. Returns its height.
+/// Draws the read-only banner at the upper left of the graphics window, as wide as its text. Returns its height.
 float read_only_banner(const Model& model, const glm::vec2& begin, float width, Actions& actions)
 {
     begin_banner("Read only", begin, width);
@@ -105,7 +105,7 @@ void question_of_belief(const Model& model, Actions& actions)
     ImGui::EndPopup();
 }
 
-/// Asks how a file that may be annotation is to be used: as the mask, as density offsets, or as another scan.
+/// Asks how to use a file that may be annotation: as the mask, as density offsets, or as another scan.
 void question_of_use(const Model& model, Actions& actions)
 {
     if (!model.unclear_file) return;
@@ -120,7 +120,7 @@ void question_of_use(const Model& model, Actions& actions)
     std::optional<Action> chosen;
     const auto button = [&](const char* name, FileUse use) {
         if (!ImGui::Button(name)) return;
-        // Alone, annotation is previewed; with other files, everything is taken at once.
+        // A single file of annotation is previewed before loading; several files are loaded together without a preview.
         const bool is_previewed = use != FileUse::scan && file.beside.empty();
         chosen = is_previewed ? Action(PreviewLoad{file.path, use}) : Action(TakeFile{file.path, file.beside, use});
     };

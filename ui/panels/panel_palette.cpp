@@ -1,4 +1,4 @@
-// A search box for everything a person can do or open (engine/workbench/bindings/palette.h).
+// A search box for everything that the user can do or open (engine/workbench/bindings/palette.h).
 
 #include <algorithm>
 #include <string>
@@ -24,8 +24,8 @@ struct Palette {
     std::string text;
     int chosen = 0;
     int shown_frame = -1;      ///< the last frame in which the box was drawn
-    bool takes_keys = true;    ///< the next frame gives the box the keyboard
-    bool ends_at_end = false;  ///< the next frame also puts the cursor behind the text
+    bool takes_keys = true;    ///< the search box gets the keyboard in the next frame
+    bool ends_at_end = false;  ///< the cursor is also put behind the text in the next frame
 };
 Palette palette;
 
@@ -56,7 +56,7 @@ bool was_pressed(ImGuiKey key)
     return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key));
 }
 
-/// Draws a line: the name, its group or the reason why it is unavailable, and its keys.
+/// Draws a line: the entry's name, its group or the reason why it is unavailable, and its keys.
 bool line(const PaletteEntry& entry, bool is_chosen, int number)
 {
     const bool is_grey = !entry.why_not.empty();
@@ -99,7 +99,7 @@ void palette_window(const Model& model, Actions& actions)
     ImGui::SetNextWindowSize({std::min(50.0f * font, viewport.WorkSize.x), 0.0f});
     ImGui::SetNextWindowPos({viewport.GetWorkCenter().x, viewport.WorkPos.y + 2.0f * font}, ImGuiCond_Always,
                             {0.5f, 0.0f});
-    // Arrows select a line; the text field keeps the keyboard.
+    // Arrow keys select a line while the text field keeps the keyboard.
     const ImGuiWindowFlags flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize |
                                    ImGuiWindowFlags_NoNavInputs;
@@ -123,9 +123,9 @@ void palette_window(const Model& model, Actions& actions)
     if (entries.empty()) ImGui::TextDisabled("No entry has these words in its name.");
     if (!entries.empty() && !entries[size_t(palette.chosen)].why_not.empty())
         ImGui::TextWrapped("%s", entries[size_t(palette.chosen)].why_not.c_str());
-    if (is_entered && entries.empty()) palette.takes_keys = true;  // Enter has taken the keyboard from the field
+    if (is_entered && entries.empty()) palette.takes_keys = true;  // Enter has made the field release the keyboard
     if (is_entered && !entries.empty()) choose(entries[size_t(palette.chosen)], actions);
-    // No key reaches the picture while this is shown, so a click elsewhere ends it.
+    // While the palette is shown, keys do not reach the picture, so a click outside closes the palette.
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !ImGui::IsWindowHovered(HOVERED_AT_ALL))
         actions.push_back(ShowPalette{false});
     if (!keys.are_awaited() && !field_is_active && !ImGui::IsAnyItemActive()) palette.takes_keys = true;

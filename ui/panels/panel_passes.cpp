@@ -1,4 +1,4 @@
-// GPU time per pass of a picture, and the use of device memory: a window for measurements.
+// GPU time per pass of a picture, and use of device memory: a window for developers who measure.
 
 #include <algorithm>
 #include <cstdio>
@@ -19,7 +19,7 @@ namespace {
 
 struct PassesState {
     PassLog log;
-    std::string graphed;  ///< pass that the graph shows; empty: all
+    std::string graphed;  ///< name of the pass shown in the graph; empty: the sum of all passes
     std::string path = "passes.json";
 };
 PassesState passes_state;

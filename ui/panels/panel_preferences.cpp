@@ -1,4 +1,4 @@
-// The user's choices for all scans: theme, sizes, keys.
+// The user's preferences, which apply to all scans: theme, sizes, keys.
 
 #include <algorithm>
 
@@ -13,7 +13,7 @@ namespace shvr::ui {
 
 namespace {
 
-constexpr float LABELS = 9.0f;  ///< width of the column, in font sizes
+constexpr float LABELS = 9.0f;  ///< width of the label column, in font sizes
 
 void row_label(const char* text)
 {
@@ -39,7 +39,7 @@ void theme_row(const Preferences& preferences, Actions& actions)
     ImGui::NewLine();
 }
 
-/// Draws a number. A change is applied when the mouse is released, since it moves the widget that the mouse holds.
+/// Draws a number. A change is applied only when the mouse is released, since it may move the widget under the mouse.
 void number_row(const char* label, const char* key, double now, double least, double most, const char* format,
                 const char* text, Actions& actions)
 {
@@ -77,7 +77,7 @@ void keys_row(const Model& model, Actions& actions)
     if (ImGui::Button("Change single keys...")) actions.push_back(ShowHelp{true});
 }
 
-/// Draws the row of a memory limit. By default there is no fixed limit: as much is used as fits.
+/// Draws the row of a memory limit. By default there is no fixed limit: SHVR then uses as much memory as is free.
 void budget_row(const char* label, const char* key, const std::optional<double>& mebibytes, uint64_t present_bytes,
                 const char* meaning, Actions& actions)
 {

@@ -1,4 +1,4 @@
-// Menus of the view: kept views, the pivot of turning, drawings over pictures; and the size of new nodes.
+// Menus of the view: stored views, the pivot of rotation, drawings over pictures; and the size of new nodes.
 
 #include <imgui/imgui.h>
 #include <imgui/imgui_stdlib.h>
@@ -12,7 +12,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// Menu of a kept view: go there, rename it, remove it.
+/// Draws the submenu of a stored view: go there, rename it, remove it.
 void kept_view(const std::string& name, const Model& model, Actions& actions)
 {
     static std::string edited;

@@ -1,4 +1,4 @@
-// Tracing: the size of the trace, and the selection. The tool is in the tool bar.
+// Tracing: the number of nodes and segments, and the selection. The tracing tool itself is in the tool bar.
 
 #include <algorithm>
 #include <cmath>
@@ -47,7 +47,7 @@ void group_of_selected(const Model& model, uint8_t group)
     ImGui::Text("%d, %s", int(group), look.name.c_str());
 }
 
-/// Draws the radius. A change is applied when the field loses focus or the mouse is released: one step of the history.
+/// Draws the radius field. When it loses focus or the mouse is released, the change becomes one step of the history.
 void radius(const Model& model, double radius_units, Actions& actions)
 {
     static double edited = 0.0;
@@ -161,7 +161,7 @@ void buttons(const Model& model, Actions& actions)
     ImGui::EndDisabled();
 }
 
-/// Selects whether the internodes of the chosen group taper from node to node or have their own radius.
+/// Selects whether the internodes of the selected group taper from node to node or have a radius of their own.
 void tapering(const Model& model, Actions& actions)
 {
     if (model.trace.internodes().empty() || model.brush().group == 0) return;

@@ -35,7 +35,7 @@ std::string in_digits(double value)
     return text;
 }
 
-/// Draws a cell with a square of the group's colour; a click selects.
+/// Draws a cell with text and a square in the group's colour; a click on the cell selects the row.
 void first_cell(const std::string& text, bool is_selected, uint8_t group, const Model& model, const Actions& selects,
                 Actions& actions)
 {
@@ -110,7 +110,7 @@ void node_row(const NodeRow& row, const Model& model, Actions& actions)
     ImGui::PopID();
 }
 
-/// Sorts by the heading that was clicked; another click on it reverses the order.
+/// Sorts by the heading that was clicked; a second click on the same heading reverses the order.
 void take_order()
 {
     ImGuiTableSortSpecs* const specs = ImGui::TableGetSortSpecs();

@@ -40,7 +40,7 @@ void change(const PanelRow& row, const PanelLayout& changed, Actions& actions)
     actions.push_back(Prefer{patch_of_panel(row.id, changed)});
 }
 
-/// Unless the user has chosen, the tracing panel is open once a trace exists or is being made.
+/// The user's choice decides; without one, the tracing panel unfolds once a trace exists or is being made.
 bool is_folded(const PanelRow& row, const Model& model)
 {
     const WindowLayout& layout = model.preferences.layout;
@@ -117,8 +117,8 @@ void side_panel(const ImVec2& at, const ImVec2& size, const Model& model, Action
     ImGui::PopStyleVar(2);
 }
 
-/// Draws the edge between picture and panels. A drag resizes the panels, a double click restores their usual width.
-/// Returns the width during a drag.
+/// Draws the splitter between picture and panels. A drag resizes the panels, a double click restores their default
+/// width. Returns the new width during a drag.
 std::optional<double> splitter(const ImVec2& at, float height, float window_width, Actions& actions)
 {
     static std::optional<double> dragged;  // in font sizes
@@ -153,7 +153,7 @@ std::optional<double> splitter(const ImVec2& at, float height, float window_widt
 
 // ---- Windows of their own
 
-/// Places a window where it was last, or cascaded in the picture.
+/// Places a window at its last position or, without one, cascaded over the picture.
 void place_window(const PanelRow& row, size_t number, const Model& model, const ImVec2& window)
 {
     const double font = ImGui::GetFontSize();
@@ -166,7 +166,7 @@ void place_window(const PanelRow& row, size_t number, const Model& model, const 
     ImGui::SetNextWindowPos({float(at.x), float(at.y)}, ImGuiCond_Appearing);
 }
 
-/// Stores the window's place once the mouse is released.
+/// Stores the window's position once the mouse is released.
 void keep_place(const PanelRow& row, const Model& model, Actions& actions)
 {
     if (ImGui::IsAnyMouseDown() || ImGui::IsWindowAppearing()) return;
@@ -269,7 +269,7 @@ Layout draw_panels(const Model& model, const glm::uvec2& window, Actions& action
         start_page(model, actions);
     status_bar(model, window, actions);
     const float banners = std::min(notices(model, {0.0f, top}, size.x - side, actions), 0.5f * height);
-    // Notices take precedence over hints, which have the same place.
+    // Notices take precedence over hints, which are drawn at the same position.
     const bool has_notice = !model.holder.empty() || !model.outside.empty() || !model.recovered.empty();
     if (model.is_open && !has_notice) first_hints(model, {0.5f * (size.x - side), top}, actions);
     if (model.shows_help) help_window(model, actions);

@@ -1,6 +1,6 @@
 #pragma once
-// The panels around the graphics window. Each function draws state and returns the user's actions; none changes
-// anything but its own widgets. Call between Window::begin_ui and Window::present, main thread.
+// The panels around the graphics window. Each function draws the given state and returns the user's actions; it changes
+// nothing except its own widgets. Call between Window::begin_ui and Window::present, main thread.
 
 #include <string_view>
 
@@ -11,19 +11,19 @@
 
 namespace shvr::ui {
 
-/// The area left for the graphics window, in pixels of the frame buffer.
+/// The area that the panels leave for the graphics window, in pixels of the frame buffer.
 struct Layout {
     glm::uvec2 begin{0}, end{0};
 };
 
-/// Name of the window of the panels at the side, for code that gives it the keyboard.
+/// Name of the window that holds the side panels, for code that gives it the keyboard.
 inline constexpr const char* SIDE_PANEL = "Side panel";
 
 /// Returns whether a window of the interface was at that position in the last frame, in units of the interface.
 bool covers(const glm::dvec2& at);
 
-/// Draws menu bar, tool bar, panels, status bar and the windows that are shown; adds to `actions`. Returns the area
-/// left. While nothing is open, the start page replaces tools and panels.
+/// Draws menu bar, tool bar, panels, status bar and the windows that are shown; appends the user's actions to
+/// `actions`. Returns the area left. While nothing is open, the start page replaces tools and panels.
 Layout draw_panels(const Model& model, const glm::uvec2& window, Actions& actions);
 
 // Draw the panels' contents, each in its own file; engine/workbench/appearance/panel_rows.h has their titles and order.
@@ -60,17 +60,17 @@ inline constexpr PanelBody PANEL_BODIES[] = {
     {"history", history_panel},
 };
 
-/// Drawn within the touch panel: the connected devices, and the state of the device in use.
+/// Draws, within the touch panel, the connected devices and the state of the device in use.
 void device_section(const Model& model, Actions& actions);
 /// Draws device time per pass of a picture, in a window of its own.
 void passes_window(const Model& model, Actions& actions);
-/// Drawn below the menu, over the whole width: the tools, the active group, and the mouse's functions.
+/// Draws, below the menu and over the whole width, the tools, the active group and the functions of the mouse buttons.
 float tool_bar_height();
 void tool_bar(const ImVec2& at, float width, const Model& model, Actions& actions);
-/// Call before Begin: puts a window where it was last (layout.h) or, the first time, into the middle, with the usual
+/// Call before Begin: puts a window at its last position (layout.h) or, the first time, in the middle, with the usual
 /// size in font sizes.
 void place_kept_window(const char* id, const glm::dvec2& usual_size, const Model& model);
-/// Call after Begin: stores the window's position and size, once the mouse is released.
+/// Call after Begin: stores the window's position and size when the mouse is released.
 void keep_window(const char* id, const Model& model, Actions& actions);
 void first_hints(const Model& model, const ImVec2& top_middle, Actions& actions);  ///< at the top, until dismissed
 void preferences_window(const Model& model, Actions& actions);
@@ -80,33 +80,33 @@ void messages_window(const Model& model, Actions& actions);
 void menu_bar(const Model& model, Actions& actions);
 /// Draws the menu item of a shortcut. While the action is unavailable, the item is grey and states the reason.
 void shortcut_item(const char* id, const Model& model, Actions& actions, bool is_checked = false);
-/// Draws items of the menu View: kept views, the pivot of turning, drawings over pictures.
+/// Draws items of the View menu: stored views, the pivot of rotation, drawings over pictures.
 void kept_views_menu(const Model& model, Actions& actions);
 void sight_items(const Model& model, Actions& actions);
-/// Drawn within the trace panel: the radius of new nodes.
+/// Draws, within the trace panel, the radius of new nodes.
 void new_nodes(const Model& model, Actions& actions);
 /// Shows the file chooser while the model requests it.
 void open_dialog(const Model& model, Actions& actions);
-/// Return whether keys go to a file chooser, and whether a file chooser or a dialog of a task needs another frame,
-/// since it waits for the disk.
+/// Return whether keys go to a file chooser, and whether a file chooser or a task's dialog needs another frame because
+/// it is waiting for the disk.
 bool choosers_have_keys();
 bool choosers_are_busy();
 /// Shows the dialog for saving under another name, from the next frame on.
 void ask_for_name(const Model& model);
-/// Asks for the scan to which the open label image belongs, opens that, and loads the label image into it.
+/// Asks for the scan to which the open label image belongs, opens that scan, and loads the label image into it.
 void ask_for_scan_of_labels(const Model& model);
 /// States what loading a file would change, and asks whether to load it.
 void load_preview_dialog(const Model& model, Actions& actions);
 /// Shows the dialog that asks for a file with annotation or a transfer function, from the next frame on.
 void ask_what_to_take(const Model& model);
 void name_and_take_dialogs(const Model& model, Actions& actions);
-/// Draws items of the menu File for exporting, importing, labelling and comparing; and their dialogs.
+/// Draws the items for exporting, importing, labelling and comparing in the File menu; and their dialogs.
 void task_menu(const Model& model);
-/// Returns whether a dialog of a task, as last drawn, waits for the disk.
+/// Returns whether the dialog of a task was waiting for the disk when it was last drawn.
 bool task_dialog_waits();
-/// Shows the dialog that makes a project of that volume, from the next frame on.
+/// Shows the dialog that makes a project of `volume`, from the next frame on.
 void ask_to_import(const std::filesystem::path& volume);
-/// Draws items of the menu File for opening with options and for correcting the spacing; and their dialogs.
+/// Draws the items for opening with options and for correcting the spacing in the File menu; and their dialogs.
 void load_menu(const Model& model);
 void load_dialogs(const Model& model, Actions& actions);
 void task_dialogs(const Model& model, Actions& actions);
@@ -115,8 +115,8 @@ void jobs_window(const Model& model, const glm::vec2& lower_middle, Actions& act
 /// Draws the page shown while nothing is open.
 void start_page(const Model& model, Actions& actions);
 void status_bar(const Model& model, const glm::uvec2& window, Actions& actions);
-/// Draws the read-only notice at the upper edge of the graphics window, and the question which files to trust.
-/// Returns the height that they take.
+/// Draws the read-only notice at the upper edge of the graphics window, and the question which files to trust. Returns
+/// the total height of both.
 float notices(const Model& model, const glm::vec2& begin, float width, Actions& actions);
 
 }  // namespace shvr::ui

@@ -20,22 +20,22 @@ struct Appearance {
     bool operator==(const Appearance&) const = default;
 };
 
-/// Sets the style and rebuilds the font atlas. The back end uploads fonts when it is attached; later
-/// Window::renew_fonts does.
+/// Sets the style and rebuilds the font atlas. Fonts are uploaded when the back end is attached, and later by
+/// Window::renew_fonts.
 void set_style(const Appearance& appearance);
 
 /// Fills the font atlas (fonts.cpp).
 void load_fonts(double pixels);
 
-/// Renders texts in the interface's fonts for picture files (figure.h), with a height in pixels.
+/// Renders texts in the interface's fonts, `pixels` high, for picture files (figure.h).
 std::vector<TextImage> draw_texts(std::span<const std::string> texts, double pixels);
 
-/// Requests the characters of user text: names, paths, messages. They are in the fonts from the next frame on, if this
+/// Requests the characters of user text: names, paths, messages. They can be drawn from the next frame on, if this
 /// machine has a font with them. Cheap; any time on the main thread.
 void want_glyphs(std::string_view text);
 /// Requests the characters typed since the last frame.
 void want_typed_glyphs();
-/// Returns whether requested characters are missing from the atlas; set_style adds them.
+/// Returns whether requested characters are missing from the atlas, in which case set_style has to be called.
 bool fonts_are_stale();
 
 /// Returns a colour of the present theme, in the format of Dear ImGui.

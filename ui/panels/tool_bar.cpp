@@ -19,10 +19,10 @@ namespace shvr::ui {
 
 namespace {
 
-constexpr float NAMED_FROM = 74.0f;   ///< minimum width, in font sizes, at which tools have their names next to them
+constexpr float NAMED_FROM = 74.0f;   ///< minimum width, in font sizes, at which tools show their names
 constexpr float GROUP_WIDTH = 13.0f;  ///< width of the active group's name, in font sizes
 
-/// Draws in a square at `corner`, in units of the square's side.
+/// Draws icons in a square at `corner`, with coordinates in units of the square's side.
 struct Pen {
     ImDrawList& list;
     ImVec2 corner;
@@ -97,13 +97,13 @@ void draw_sign(Tool tool, const Pen& pen)
     }
 }
 
-/// Returns the tooltip of a tool: name, key, and the effect of a click.
+/// Returns the tooltip of a tool: its name, its key, and the effect of a click.
 std::string explanation(const ToolRow& row, const Keymap& keymap)
 {
     return sentence(row.name, key_in_brackets(row.shortcut, keymap), "\n", row.hint);
 }
 
-/// Draws the tool's icon, and its name if there is room. The active tool has its own background and an underline.
+/// Draws the tool's icon, and its name if there is room. The active tool is marked by a background and an underline.
 void tool_button(const ToolRow& row, bool has_name, const Model& model, Actions& actions)
 {
     const bool is_used = model.tool() == row.tool;
@@ -139,7 +139,7 @@ ImU32 color_of_group(const glm::dvec3& linear)
     return ImGui::ColorConvertFloat4ToU32({encoded(linear.r), encoded(linear.g), encoded(linear.b), 1.0f});
 }
 
-/// Draws a group's colour; the eraser's square is crossed out.
+/// Draws a square in the group's colour; the eraser's square is crossed out.
 void swatch(const Model& model, uint8_t group)
 {
     const float size = ImGui::GetFrameHeight();
@@ -202,7 +202,7 @@ void active_group(const Model& model, Actions& actions)
     step_button("+", "new_group", model, actions);
 }
 
-/// Shows the functions of the mouse buttons, as far as there is room; a tooltip shows all of them.
+/// Shows the functions of the mouse buttons, shortened to the available width; a tooltip shows all of them.
 void mouse_words(const Model& model)
 {
     const bool is_over_pane = model.pointer && model.pointer->pane < model.panes.size();

@@ -10,7 +10,7 @@
 
 namespace shvr::ui {
 
-/// A colour by its role, from the present theme.
+/// A colour that is looked up by its role in the present theme.
 struct ThemeColor {
     ColorRole role;
     operator ImU32() const { return shade_of(role); }
@@ -19,45 +19,45 @@ inline constexpr ThemeColor WARNING{ColorRole::warning}, ERROR_TEXT{ColorRole::e
 
 /// Adds a tooltip to the widget drawn last, wrapped to a readable width.
 void hint(const char* text);
-/// Likewise, but next to a widget that must stay visible: at its left or right, whichever side has more room.
+/// Adds a tooltip next to a widget that must stay visible: at its left or right, whichever side has more room.
 void hint_beside(const char* text);
 
-/// Draws a label in the left column, for a text (text_label) or a framed widget (label) next to it.
+/// Draw a label in the left column: text_label for a text next to it, label for a framed widget.
 void text_label(const char* text);
 void label(const char* text);
-/// Draws a label; the widget after it takes the rest of the row.
+/// Draws a label; the next widget takes the rest of the row.
 void row(const char* text);
 
 /// Draws a row with a slider, for a value within its limits.
 bool slider(const char* label, double& value, double lower, double upper, const char* format,
             ImGuiSliderFlags flags = 0);
 
-/// ImGui::SliderScalar with a number that is readable wherever the handle is, and without a label: "##value". With
-/// Shift the handle moves a tenth as far as the mouse.
+/// ImGui::SliderScalar without a label ("##value"), whose number stays readable wherever the handle is. With Shift the
+/// handle moves a tenth as far as the mouse.
 bool slider_scalar(const char* id, ImGuiDataType type, void* value, const void* lower, const void* upper,
                    const char* format, ImGuiSliderFlags flags = 0);
 
-/// ImGui::DragScalar of a number; with Shift the value changes a tenth as fast.
+/// ImGui::DragScalar for a number. With Shift the value changes a tenth as fast.
 bool drag_number(const char* id, double& value, double speed, double lower, double upper, const char* format,
                  ImGuiSliderFlags flags = 0);
 
-/// Returns whether the widget drawn last was double-clicked, and if so makes it release the mouse.
+/// Returns whether the widget drawn last was double-clicked; if so, makes the widget release the mouse.
 bool is_double_clicked();
 
-/// Restores a setting's default, or the value chosen for the volume, on a double click on the widget drawn last.
-/// `key`: as in the table of engine/session, "light.ambient". Returns whether that happened, so that the widget's own
-/// change is not sent as well.
+/// Restores a setting's default, or the value chosen for the volume, when the widget drawn last is double-clicked.
+/// `key`: as in the table of engine/session, such as "light.ambient". Returns whether the setting was restored, in
+/// which case the caller must not send the widget's own change.
 bool resets(const char* key, Actions& actions);
 
-/// ImGui::BeginMenu, no higher than the window below the menu bar: it scrolls instead of opening under the pointer,
-/// where the release of the click that opened it would choose an entry.
+/// ImGui::BeginMenu for a menu that is no higher than the window below the menu bar. A higher menu would open under the
+/// pointer, and releasing the button would choose an entry; this menu scrolls instead.
 bool begin_menu(const char* label, bool is_enabled = true);
 
-/// Call within the main menu bar, after its menus: Escape closes all of them, since a nested one would open again
-/// under the pointer.
+/// Call within the main menu bar, after its menus. Escape closes all menus at once, since a parent menu would reopen
+/// the nested one under the pointer.
 void close_menus_by_escape();
 
-/// Returns the text, or as much of its beginning as fits that width, followed by three dots.
+/// Returns the text, or the longest beginning of the text that fits `width`, followed by three dots.
 std::string shortened(const std::string& text, float width);
 
 /// Returns a unit in its usual notation.

@@ -25,17 +25,17 @@ std::string title_of(std::string_view key)
     return title;
 }
 
-/// One chooser for all fields, since at most one is shown.
+/// All fields share this chooser, since at most one chooser is shown at a time.
 FileChooser chooser({.title = "Choose a file or a folder",
                      .verb = "Choose",
                      .note = "A new name can be typed, too.",
                      .wanted = FileChooser::Wanted::any});
 ImGuiID chooser_of = 0;
-FieldKeys first_keys;  ///< passes the keyboard to a dialog's first path
+FieldKeys first_keys;  ///< gives the keyboard to the first path of a dialog that has just opened
 
 constexpr float NAME_COLUMN = 9.0f, VALUE_WIDTH = 26.0f;  ///< in font sizes
 
-/// Draws the name at the left. Returns the label for the widget that follows, which is only an id.
+/// Draws the name at the left. Returns the label for the next widget: an id without visible text.
 std::string begin_row(std::string_view name)
 {
     ImGui::AlignTextToFramePadding();
@@ -45,7 +45,7 @@ std::string begin_row(std::string_view name)
     return "##" + std::string(name);
 }
 
-/// Returns the first ending that a key's meaning lists: ".swc" of "nodes: .swc, .txt"; empty: none.
+/// Returns the first file name extension in a key's meaning: ".swc" in "nodes: .swc, .txt"; empty: none.
 std::string first_ending(std::string_view meaning)
 {
     const size_t at = meaning.find(": .");
@@ -124,7 +124,7 @@ public:
             const std::filesystem::path begin = value.empty() ? new_file(name, about) : value;
             chooser.ask(begin, places(begin, {}));
         }
-        // A chooser is drawn by the field that opened it.
+        // Only the field that opened the chooser draws it and takes its path.
         if (chooser_of == id)
             if (const auto path = chooser.draw()) value = *path;
         ImGui::PopID();
@@ -149,7 +149,7 @@ public:
     void other(std::string_view, const std::function<void(const JsonNode&)>&,
                const std::function<std::optional<std::string>()>&, const About&) override
     {}
-    /// Draws a section. A check box (`has`) opens an optional section; unchecking it removes the section.
+    /// Draws a section. An optional section has a check box (`has`), which adds the section or removes it.
     void section(std::string_view name, const Visit& visit, const About&) override
     {
         ImGui::PushID(std::string(name).c_str());
@@ -169,20 +169,20 @@ public:
     void mention(std::string_view, const About& about) override { tell(about); }
 
 private:
-    /// Path for a key that names a file to be written: "/scans/spike-trace.swc".
+    /// Returns a default path for a key that names a file to be written, such as "/scans/spike-trace.swc".
     std::filesystem::path new_file(std::string_view name, const About& about) const
     {
         const std::string ending = name == "project" ? "" : first_ending(about.meaning);
         if (beside_.empty() || (ending.empty() && name != "project")) return beside_.parent_path();
         return beside_.string() + "-" + std::string(name) + ending;
     }
-    /// Writes a description to the right of a widget that has no text.
+    /// Writes a description to the right of a widget that shows no text itself.
     static void words_beside(const About& about, float fonts)
     {
         ImGui::SameLine();
         ImGui::TextDisabled("%s", shortened(about.meaning, fonts * ImGui::GetFontSize()).c_str());
     }
-    /// Returns the description to show in an empty field, as far as there is room.
+    /// Returns the description for an empty field, shortened to the field's width.
     static std::string words_for(const About& about, float width)
     {
         return shortened(about.meaning, width - 2.0f * ImGui::GetStyle().FramePadding.x);

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The last frame in which any chooser was open, and the last frame in which one read a folder.
+/// The last frame in which any chooser was open, and the last frame in which any chooser was reading a folder.
 int open_in_frame = -10, reading_in_frame = -10;
 
 bool is_recent(int frame)
@@ -41,7 +41,7 @@ std::string with_slash(const fs::path& folder)
     return text.ends_with('/') ? text : text + "/";
 }
 
-/// On Tab, completes the path in a field, if the completion is known soon.
+/// Completes the path in a field on Tab, unless the file system takes too long to answer.
 struct Completion {
     fs::path folder;
     bool has_answered = true;
@@ -121,7 +121,7 @@ void FileChooser::forget_questions()
     is_folder_ = {};
 }
 
-/// Lists that path, if it is a folder, as soon as this is known.
+/// Lists `folder` as soon as the file system has confirmed that it is a folder.
 void FileChooser::follow(const fs::path& folder)
 {
     followed_ = folder;
@@ -142,7 +142,7 @@ void FileChooser::select(size_t row)
     ++field_number_;
 }
 
-/// Accepts the path, enters it, or states why it is refused, as soon as the file system has answered.
+/// Accepts the typed path, enters it, or states why it is refused, once the file system has answered.
 void FileChooser::accept(const std::string& typed, bool enters_folders)
 {
     forget_questions();
@@ -172,7 +172,7 @@ void FileChooser::settle(std::chrono::milliseconds patience)
         field_wants_keys_ = true;
         return;
     }
-    // Enters the folder of a typed path, so that the dialog shows that folder if it is opened again.
+    // Enters the folder of a typed path, so that the next opening of the dialog begins there.
     if (judged_.parent_path() != list_.folder()) {
         enter(judged_.parent_path());
         wanted_name_ = judged_.filename().string();
@@ -181,7 +181,7 @@ void FileChooser::settle(std::chrono::milliseconds patience)
     accepted_ = judged_;
 }
 
-/// Returns the reason of a noticeable wait; empty: none.
+/// Returns a sentence that explains the present wait, if it is long enough to be noticed; otherwise empty.
 std::string FileChooser::waits_in_words()
 {
     constexpr double NOTICED_S = 0.5;
@@ -217,7 +217,7 @@ std::optional<fs::path> FileChooser::draw()
     return result;
 }
 
-/// Takes the file system's answers since the last frame.
+/// Takes the answers that the file system has given since the last frame.
 void FileChooser::take_answers()
 {
     list_.show(all_files_, hidden_);
@@ -262,7 +262,7 @@ std::optional<fs::path> FileChooser::contents()
     return accepted_;
 }
 
-/// Draws the line below the list: why a path or a folder is refused, otherwise the note.
+/// Draws the line below the list: the reason why a path or a folder is refused or, without one, the note.
 void FileChooser::note_line(const std::string& failure)
 {
     if (failure.empty()) {
@@ -274,7 +274,7 @@ void FileChooser::note_line(const std::string& failure)
     }
 }
 
-/// Draws the choice of names to list, and their number.
+/// Draws the choice of which names are listed, and the number of listed names.
 void FileChooser::filter_row()
 {
     bool changed = false;
@@ -322,14 +322,14 @@ void FileChooser::path_field()
     if (entered) accept(text_, true);
 }
 
-/// While a whole path is typed, shows the folder of that path as soon as the folder's slash has been typed.
+/// While the user types an absolute path, lists the folder of that path once the slash after the folder is typed.
 void FileChooser::follow_typed()
 {
     if (!text_.ends_with('/') || !(text_.starts_with('/') || text_.starts_with('~'))) return;
     if (const fs::path folder = typed_path(text_, list_.folder()); folder != list_.folder()) follow(folder);
 }
 
-/// Up and Down lead from the field into the list, where letters jump, Backspace goes up, and / or ~ begins a path.
+/// Up and Down move from the field into the list. There, letters jump, Backspace goes up, and / or ~ begins a path.
 void FileChooser::keys()
 {
     const auto step = [&](int64_t rows) {
@@ -377,7 +377,7 @@ void FileChooser::file_table(float height)
 {
     const ImGuiTableFlags flags =
         ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_Resizable | ImGuiTableFlags_BordersInnerV;
-    ImGui::PushID(list_.folder().c_str());  // each folder has its own scroll position, which begins at the top
+    ImGui::PushID(list_.folder().c_str());  // gives each folder a scroll position of its own, which begins at the top
     if (ImGui::BeginTable("files", 4, flags, {0.0f, height})) {
         const float font = ImGui::GetFontSize();
         ImGui::TableSetupScrollFreeze(0, 1);

@@ -1,7 +1,7 @@
 #pragma once
-// A dialog that asks for a file or a folder of this machine: places, a list, and a field for a typed path. If a path
-// is refused, the dialog shows the reason and keeps the path. The file system is asked in the background (asked.h):
-// fast answers appear at once, and during slow ones the dialog shows that it waits. Between Window::begin_ui and
+// A dialog that asks for a file or a folder of this machine: places, a list, and a field for a typed path. A refused
+// path stays in the field, with the reason below. The file system is asked in the background (asked.h): fast answers
+// appear at once, and during slow answers the dialog states that it is waiting. Between Window::begin_ui and
 // Window::present, main thread.
 
 #include <optional>
@@ -24,17 +24,17 @@ public:
     };
 
     explicit FileChooser(const Question& question) : question_(question), all_files_(question.wanted == Wanted::file) {}
-    /// Shows the dialog from the next `draw` on. `begin`: a path to begin with; empty: the last one, or home.
+    /// Shows the dialog from the next `draw` on. `begin`: path to begin with; empty: the last path, or home.
     void ask(const std::filesystem::path& begin, std::vector<Place> places);
-    /// Shows the dialog again, with the reason why the path was refused.
+    /// Shows the dialog again, with the reason why the chosen path was refused.
     void ask_again(const std::filesystem::path& path, std::vector<Place> places, std::string failure);
     bool is_open() const { return is_open_ || is_asked_for_; }
     void close() { closes_ = true; }
-    /// Draws the dialog, in the same window each time. Returns the path that was accepted, once.
+    /// Draws the dialog, always in the same window. Returns an accepted path, once.
     std::optional<std::filesystem::path> draw();
-    /// Returns whether any chooser is shown: keys go to it.
+    /// Returns whether any chooser is shown: then keys go to the chooser.
     static bool has_keys();
-    /// Returns whether any chooser is reading a folder: another frame is needed.
+    /// Returns whether any chooser is still reading a folder, so that another frame is needed.
     static bool is_busy();
 
 private:
@@ -61,11 +61,11 @@ private:
     std::string text_;     ///< text of the path field
     std::string failure_;  ///< why the path was refused
     std::optional<size_t> selected_;
-    std::string wanted_name_;  ///< name to select as soon as it is listed
+    std::string wanted_name_;  ///< name to select as soon as the list contains it
     std::optional<std::filesystem::path> accepted_;
     Asked<Verdict> verdict_;  ///< verdict on `judged_`
     std::filesystem::path judged_;
-    Asked<bool> is_folder_;  ///< whether `followed_` is a folder, which is then listed
+    Asked<bool> is_folder_;  ///< whether `followed_` is a folder; if so, it is listed
     std::filesystem::path followed_;
     std::optional<double> waiting_since_;  ///< start of the wait, by Dear ImGui's clock
     bool all_files_ = false;
@@ -73,7 +73,7 @@ private:
     bool is_asked_for_ = false, is_open_ = false, closes_ = false;
     FieldKeys field_keys_;
     bool field_wants_keys_ = false, field_has_keys_ = false, scrolls_ = false;
-    int field_number_ = 0;  ///< changed to give the field another id, so that Dear ImGui drops its edit state
+    int field_number_ = 0;  ///< incremented to give the field a new id, so that Dear ImGui drops its edit state
 };
 
 }  // namespace shvr::ui

@@ -1,5 +1,5 @@
-// Opening with choices: the file's kind, the resources that loading takes, and values from the user that replace the
-// file's. Also the spacing of the open volume, and how the user corrects it.
+// Dialogs for opening with choices: the file's kind, the resources that loading takes, and values from the user in
+// place of the file's. Also shows the spacing of the open volume, and lets the user correct it.
 
 #include <algorithm>
 #include <string>
@@ -30,13 +30,13 @@ FileChooser choosing({.title = "Look at a file",
 struct LoadDialog {
     LoadForm form;
     std::string path;
-    std::vector<Choice> choices;  ///< choices that the file was found to offer
-    int levels = 0;               ///< number of levels that the file was found to have; 0: not known
+    std::vector<Choice> choices;  ///< choices that an examination of the file has found
+    int levels = 0;               ///< number of levels that an examination of the file has found; 0: not known
     bool is_asked_for = false;
 };
 LoadDialog loading;
 
-/// Remembers the available choices, even after one of them is chosen.
+/// Adds the choices that the file offers now. Keeps earlier choices, even if the file no longer offers them.
 void follow_choices(const Candidate* candidate)
 {
     if (!candidate || candidate->path != loading.path) return;
@@ -46,7 +46,7 @@ void follow_choices(const Candidate* candidate)
     }
 }
 
-/// Draws a list if the file offers several choices, otherwise a field to type in.
+/// Draws a list if the file offers several choices, otherwise a text field.
 bool choice_field(const char* label, const char* key, std::string& value)
 {
     const auto found = std::ranges::find(loading.choices, key, &Choice::key);
@@ -67,7 +67,7 @@ bool choice_field(const char* label, const char* key, std::string& value)
     return is_changed;
 }
 
-/// Selects a level, if a file has several.
+/// Lets the user select a level if a file has several.
 bool level_field(int& level)
 {
     if (loading.levels < 2) return false;
@@ -91,7 +91,7 @@ SpacingDialog correcting;
 
 bool spacing_fields(glm::dvec3& spacing, std::string& unit)
 {
-    // In double, so that 0.1 is stored as it was typed.
+    // Edited in double precision, so that 0.1 is stored as typed.
     glm::dvec3 sides = spacing;
     bool is_changed =
         ImGui::InputScalarN("size of a voxel: x, y, z", ImGuiDataType_Double, &sides.x, 3, nullptr, nullptr, "%.15g");

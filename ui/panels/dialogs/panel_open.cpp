@@ -1,4 +1,4 @@
-// The dialog that asks for a file, and the page that is shown while nothing is open.
+// The dialog that asks for a file, and the start page, which is shown while nothing is open.
 
 #include <algorithm>
 #include <filesystem>
@@ -36,15 +36,15 @@ FileChooser taking({.title = "Load annotation or a curve",
 FileChooser labelled({.title = "Open the scan of a label image",
                       .verb = "Open",
                       .note = "The label image is loaded into it as its mask; undo takes that back."});
-std::filesystem::path labels_of_scan;  ///< the label image for which `labelled` asks
+std::filesystem::path labels_of_scan;  ///< the label image whose scan the `labelled` dialog asks for
 
 std::vector<Place> places_of(const Model& model)
 {
     return places(model.is_open ? model.session.volume_path : std::filesystem::path(), model.preferences.recent);
 }
 
-/// Returns whether a path is gone. The paths are checked when the list changes, in the background, and no caller waits
-/// for the check, not even at exit: a network that does not answer takes minutes.
+/// Returns whether a path no longer exists. The paths are checked in the background when the list changes. No caller
+/// waits for the check, not even at exit: a network that does not answer takes minutes to fail.
 bool is_gone(const std::filesystem::path& path, const std::vector<std::filesystem::path>& recent)
 {
     struct Search {
@@ -69,7 +69,7 @@ bool is_gone(const std::filesystem::path& path, const std::vector<std::filesyste
     return std::ranges::find(search->gone, path) != search->gone.end();
 }
 
-/// Lists recently opened paths: the name, its folder and, if the path is missing, a cross that removes the entry.
+/// Lists recently opened paths: the name, its folder and, for a missing path, a cross that removes the entry.
 void recent_list(const Model& model, Actions& actions)
 {
     const auto& recent = model.preferences.recent;
@@ -119,7 +119,7 @@ void open_dialog(const Model& model, Actions& actions)
 {
     static bool was_asked = false;
     if (model.asks_what_to_open && !std::exchange(was_asked, true)) {
-        // The first time, the dialog starts in the folder of the last opened file; after that, in the folder used last.
+        // At first, the dialog starts in the folder of the last opened file; later, in the folder where it was left.
         static bool was_shown = false;
         const auto& recent = model.preferences.recent;
         const std::filesystem::path begin =
@@ -127,7 +127,7 @@ void open_dialog(const Model& model, Actions& actions)
         opening.ask(begin, places_of(model));
     }
     if (!model.asks_what_to_open && std::exchange(was_asked, false) && opening.is_open()) opening.close();
-    static std::filesystem::path chosen;  // path chosen here last; if it cannot be opened, the dialog asks again
+    static std::filesystem::path chosen;  // path chosen last; if it cannot be opened, the dialog asks again
     if (!chosen.empty() && model.failed_path && *model.failed_path == chosen) {
         opening.ask_again(std::exchange(chosen, {}), places_of(model), std::string(model.open_failure));
         was_asked = true;
@@ -152,7 +152,7 @@ void ask_for_name(const Model& model)
 
 void ask_what_to_take(const Model& model)
 {
-    static bool was_shown = false;  // later the dialog begins where it was left
+    static bool was_shown = false;  // from the second time on, the dialog starts where it was left
     const std::filesystem::path beside =
         std::exchange(was_shown, true) ? std::filesystem::path() : model.session_path.parent_path() / "";
     taking.ask(beside, places_of(model));

@@ -1,4 +1,4 @@
-// The dialog that states what loading a file would change, before it does.
+// The dialog that states what loading a file will change, before the file is loaded.
 
 #include <algorithm>
 #include <string>
@@ -33,7 +33,7 @@ void count_cell(int64_t voxels, const char* sign)
     if (voxels > 0) ImGui::Text("%s%lld", sign, static_cast<long long>(voxels));
 }
 
-/// One row for each group that gains or loses voxels.
+/// Draws a row for each group that gains or loses voxels.
 void group_table(const Groups& groups, const LoadPreview& preview)
 {
     const float rows = float(std::min(preview.groups.size(), MAX_ROWS_SHOWN)) + 1.5f;

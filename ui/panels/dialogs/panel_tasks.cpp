@@ -1,4 +1,4 @@
-// Long work: the dialogs that request it, and its progress.
+// Long tasks: the dialogs that start them, and their progress.
 
 #include <chrono>
 #include <cmath>
@@ -21,7 +21,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// "leaf.swc exists and will be replaced"; empty if nothing is replaced.
+/// Returns a warning such as "leaf.swc exists and will be replaced"; empty if no file is replaced.
 template <class Task>
 std::string replacement(const Task& task)
 {
@@ -56,7 +56,7 @@ constexpr bool WRITES_FILES = !std::is_same_v<Task, EvaluateTask>;
 constexpr const char* WAITS = "Waiting for the disk";
 int waits_in_frame = -1;  ///< last frame in which a dialog waited for the disk
 
-/// A dialog with the options of a task; the options are kept for the next time with the same scan.
+/// A dialog with the options of a task; the options are kept for the next use with the same scan.
 template <class Task>
 struct TaskDialog {
     Task task;
@@ -78,7 +78,7 @@ struct TaskDialog {
             ImGui::TextDisabled("%s", why.empty() ? " " : why.c_str());
         }
         const ImVec2 button{6.0f * ImGui::GetFontSize(), 0.0f};
-        // Enter waits for the disk's answer to what was typed before it.
+        // Enter takes effect only after the disk has answered for the options as typed before Enter.
         if (begins) is_entered_ = false;
         if (!has_chooser && enter_confirms()) is_entered_ = true;
         const bool confirms = std::exchange(is_entered_, is_entered_ && why == WAITS) && why.empty();
@@ -96,7 +96,7 @@ struct TaskDialog {
     }
 
 private:
-    /// Output files are named after the scan, next to its session or its file. Empty for comparisons: they write none.
+    /// Names output files after the scan, next to its session or file. Empty for comparisons, which write no files.
     static std::filesystem::path beside(const Model& model)
     {
         if (!model.is_open || !WRITES_FILES<Task>) return {};
@@ -115,7 +115,7 @@ private:
         if (is_known_) return known_.refusal;
         return asked_.is_pending() ? WAITS : "";
     }
-    /// Checks files in the background: after each change, and again now and then, since files come and go.
+    /// Checks the task's files in the background: after each change, and every second, since files come and go.
     void ask_disk()
     {
         constexpr double AGAIN_S = 1.0;
@@ -136,7 +136,7 @@ private:
 
     Asked<Verdict> asked_;
     Verdict known_;
-    bool is_entered_ = false;  ///< Enter was pressed, and what it confirms is not known yet
+    bool is_entered_ = false;  ///< Enter was pressed, and the answer of the disk is still awaited
     bool is_known_ = false;    ///< `known_` answers for the current task
     std::string asked_of_;
     double asked_s_ = 0.0;
@@ -150,7 +150,7 @@ struct Dialogs {
 };
 Dialogs dialogs;
 
-/// Forgets the tasks of another scan: otherwise this scan's exports would replace the files of that scan.
+/// Resets the tasks when another scan is opened, since their file names would overwrite files of the previous scan.
 void forget_another_scan(const Model& model)
 {
     static std::filesystem::path session;

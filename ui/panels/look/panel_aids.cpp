@@ -1,4 +1,4 @@
-// Drawings next to the volume: the probe's look, aids to find it, nodes and internodes.
+// Settings of drawings next to the volume: the probe's appearance, aids to find the probe, nodes and internodes.
 
 #include <cmath>
 
@@ -14,7 +14,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// Adds a tooltip with the key of the same function.
+/// Adds a tooltip that also names the shortcut for the same function.
 void explain(const Model& model, const char* shortcut, const std::string& text)
 {
     const std::string key = model.keymap.text_of(*shortcut_named(shortcut));
@@ -39,7 +39,7 @@ void shown(const Model& model, Actions& actions)
     if (is_other) set(actions, model, [&](Session& s) { s.view = view; });
 }
 
-/// Selects the drawings over the picture; screenshots contain them if the menu File says so.
+/// Selects the marks drawn over the picture. Screenshots contain them if so chosen in the File menu.
 void marks(const Model& model, Actions& actions)
 {
     InteractionSettings interaction = model.session.interaction;

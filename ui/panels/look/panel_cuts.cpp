@@ -1,4 +1,4 @@
-// Cutting planes of the volume and clip planes of the camera, as numbers.
+// Cutting planes of the volume and clip planes of the camera, edited as numbers.
 
 #include <algorithm>
 
@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* AXIS_NAMES[] = {"x", "y", "z"};
 
-/// Draws one plane, in units of `scale` voxels; returns whether it was moved.
+/// Draws one plane's position, shown in units of `scale` voxels. Returns whether the plane was moved.
 bool plane(const char* id, double& voxels, double least, double most, double scale, const char* format)
 {
     double value = voxels * scale;
@@ -26,7 +26,7 @@ bool plane(const char* id, double& voxels, double least, double most, double sca
     return true;
 }
 
-/// Draws a row of the table: the visible part along one axis.
+/// Draws a table row: the visible range of the volume along one axis.
 bool axis_row(int axis, CutBox& cut, double size, double scale, const char* unit, const char* format)
 {
     ImGui::PushID(unit);
@@ -68,7 +68,7 @@ void cutting_planes(const Model& model, Actions& actions)
                     axis_row(axis, cut, size[axis], model.volume.spacing[axis], spelled(model.volume.unit), "%.5g");
         ImGui::EndTable();
     }
-    // The planes displayed are clamped to the volume. Those that the user has not moved keep their stored position.
+    // The displayed planes are clamped to the volume. Planes that the user has not moved keep their stored positions.
     for (int axis = 0; axis < 3; ++axis)
         if (cut.upper[axis] == size[axis] && model.session.cut.upper[axis] >= size[axis])
             cut.upper[axis] = model.session.cut.upper[axis];
@@ -87,7 +87,7 @@ void cutting_planes(const Model& model, Actions& actions)
         "moves in any case.");
 }
 
-/// Draws a distance from the eye; 0 means no plane.
+/// Draws a clip plane's distance from the eye; 0 means no plane.
 bool clip(const char* name, double& distance, double reach, const char* none, const char* format, const char* help)
 {
     row(name);

@@ -41,7 +41,7 @@ void background(const Model& model, Actions& actions)
     shortcut("Black", 0.0);
 }
 
-/// Draws a ball whose highlight shows the light's direction and follows the mouse. Returns whether it was dragged.
+/// Draws a ball whose highlight shows the light's direction; dragging moves the light. Returns whether it was dragged.
 bool light_ball(glm::dvec3& direction, bool& is_reset, Actions& actions)
 {
     const float side = 5.0f * ImGui::GetFontSize(), radius = 0.46f * side;
@@ -58,7 +58,7 @@ bool light_ball(glm::dvec3& direction, bool& is_reset, Actions& actions)
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const glm::dvec2 place = place_on_ball(light_direction(direction));
     list.AddCircleFilled(middle, radius, IM_COL32(62, 62, 62, 255), 40);
-    // Draws rings towards the light, ever smaller and brighter, which look like a shaded ball.
+    // Draws ever smaller and brighter discs, shifted towards the light, which look like a shaded ball.
     constexpr int RINGS = 14;
     for (int ring = 1; ring <= RINGS; ++ring) {
         const float share = float(ring) / float(RINGS + 1);

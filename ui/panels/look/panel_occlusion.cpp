@@ -1,4 +1,4 @@
-// Local ambient occlusion: how much of the ambient light reaches a point, and how it is mapped to displayed light.
+// Local ambient occlusion: how much of the ambient light reaches a point, and the curve from that share to brightness.
 
 #include <algorithm>
 
@@ -15,7 +15,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// The selected point, whose values are shown as numbers, and whether the mouse is dragging it.
+/// The selected point, whose values are shown as numbers, and whether the mouse is dragging that point.
 size_t chosen_point = 0;
 bool drags_point = false;
 FineDrag held_point;
@@ -50,7 +50,7 @@ void draw_curve(const OcclusionSettings& settings, const ImVec2& begin, const Im
     }
 }
 
-/// Draws the square: a double click adds a point, a drag moves one, a right click removes it.
+/// Draws the curve in a square: a double click adds a point, a drag moves one, and a right click removes one.
 void curve_field(const OcclusionSettings& settings, const Model& model, Actions& actions)
 {
     label("");
@@ -92,7 +92,7 @@ void curve_field(const OcclusionSettings& settings, const Model& model, Actions&
     draw_curve(settings, begin, end);
 }
 
-/// Edits the curve as numbers, without the mouse.
+/// Draws number fields for the curve, for use without a mouse.
 void curve_numbers(const OcclusionSettings& settings, const Model& model, Actions& actions)
 {
     const OcclusionPoints& points = settings.mapping;

@@ -21,7 +21,7 @@ namespace {
 /// State of the name dialogs between frames.
 struct NameState {
     std::string name;     ///< typed
-    std::string renamed;  ///< preset to rename; empty: a new preset of the present curve is named
+    std::string renamed;  ///< preset being renamed; empty: the name is for a new preset with the present curve
 };
 NameState asked;
 
@@ -33,7 +33,7 @@ void ask_for_preset_name(const std::string& renamed)
     asked = {renamed, renamed};
 }
 
-/// Draws the menu that a right click on one of the user's presets opens.
+/// Draws the context menu of one of the user's own presets.
 bool own_menu(const TransferPreset& preset, Actions& actions)
 {
     bool asks = false;
@@ -55,8 +55,8 @@ bool own_menu(const TransferPreset& preset, Actions& actions)
     return asks;
 }
 
-/// Draws the colours of a function from the lowest to the highest intensity, at the right of the row drawn last; higher
-/// means more opaque, as in the curve.
+/// Draws a function's colours from the lowest to the highest intensity, at the right of the row drawn last. A higher
+/// bar is more opaque, as in the curve.
 void draw_colors(const TransferFunction& function, const VolumeStatistics& statistics)
 {
     constexpr float COLUMN = 2.0f;
@@ -76,7 +76,7 @@ void draw_colors(const TransferFunction& function, const VolumeStatistics& stati
     }
 }
 
-/// Draws a row of the list, with its colours. Returns whether it was chosen.
+/// Draws a row of the list, with the preset's colours. Returns whether the row was chosen.
 bool preset_row(const std::string& name, const TransferFunction& function, const Model& model)
 {
     const float width = ImGui::CalcTextSize(name.c_str()).x + (COLORS_WIDTH + 1.0f) * ImGui::GetFontSize();

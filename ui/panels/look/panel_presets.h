@@ -1,5 +1,5 @@
 #pragma once
-// The line above the curve: whole transfer functions to start from, and the user's own.
+// The line above the curve, for choosing a whole transfer function: the built-in ones and the user's own.
 
 #include "engine/workbench/actions/action.h"
 #include "engine/workbench/models/model.h"

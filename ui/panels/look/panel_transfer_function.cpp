@@ -1,4 +1,4 @@
-// The transfer function as a curve over the histogram. engine/workbench/curves holds the effects of the mouse.
+// The transfer function as a curve over the histogram. engine/workbench/curves defines the effects of the mouse.
 
 #include "ui/panels/panels.h"
 
@@ -30,21 +30,21 @@ using Grip = TransferCurve::Grip;
 
 constexpr float HEIGHT = 150.0f / 14.0f;  ///< height of the curve, in font sizes
 constexpr float POINT_RADIUS = 0.36f;     ///< in font sizes
-constexpr float MARGIN = 0.65f;           ///< margin around the axes, so that circles at the edge are whole
-constexpr float REACH = 0.65f;            ///< distance within which the mouse grabs things, in font sizes
-constexpr float COLUMN = 2.0f;            ///< width of one colour in the coloured area, in pixels
+constexpr float MARGIN = 0.65f;           ///< margin around the axes, so that points at the edge are drawn whole
+constexpr float REACH = 0.65f;            ///< distance at which the mouse grabs a point or line, in font sizes
+constexpr float COLUMN = 2.0f;            ///< width of each single-colour column of the area, in pixels
 constexpr float STROKE = 0.11f;           ///< in font sizes
 constexpr float FILL_BAR = 0.5f;          ///< width of the bar of a fill value, in font sizes
 
 constexpr ThemeColor BACKGROUND{ColorRole::chart}, BARS{ColorRole::chart_bars}, LINE{ColorRole::chart_line},
     PAINT_LINE{ColorRole::chart_paint}, FELT_LINE{ColorRole::chart_felt}, FILL_BARS{ColorRole::chart_felt};
 
-/// The widget's state between frames. Everything else belongs to the session.
+/// The widget's state between frames. All other state belongs to the session.
 struct WidgetState {
     Grip grip = Grip::nothing;
     size_t selected = 0;
     CurveRange range;         ///< range of the horizontal axis; fixed while dragging
-    double grabbed_at = 0.0;  ///< intensity under the mouse when it last moved all points
+    double grabbed_at = 0.0;  ///< intensity under the mouse at the last motion that shifted all points
     FineDrag held;            ///< the centre of the grabbed item
     bool is_logarithmic = true;
     VolumeStatistics bars_of;  ///< the statistics from which `bars` were made
@@ -87,7 +87,7 @@ void draw_histogram(const CurveAxes& axes, const WidgetState& state, ImDrawList&
         const float left = axes.x_of(bar.lower), right = std::max(axes.x_of(bar.upper), left + 1.0f);
         list.AddRectFilled({left, axes.end.y - height}, {right, axes.end.y}, BARS);
     }
-    // Fill values lie far outside the axis, so their bars stand at the ends of the axis.
+    // Fill values lie far outside the axis, so their bars are drawn at the ends of the axis.
     const float width = FILL_BAR * ImGui::GetFontSize();
     for (const HistogramBar& bar : state.bars.fill) {
         const auto height = float(height_of_bar(bar.voxels, most, state.is_logarithmic)) * (axes.end.y - axes.begin.y);
@@ -107,7 +107,7 @@ void draw_area(const CurveAxes& axes, const TransferFunction& function, ImDrawLi
     }
 }
 
-/// Draws the line's segments: linear in opacity, and therefore curved on this axis.
+/// Draws the line's segments. They are linear in opacity, and therefore curved on this axis.
 void draw_line(const CurveAxes& axes, const Points& points, ImDrawList& list)
 {
     constexpr int PIECES = 16;
@@ -136,7 +136,7 @@ void draw_points(const CurveAxes& axes, const Points& points, size_t selected, I
 
 constexpr const char *PAINT_WORD = "paint", *FELT_WORD = "haptic";
 
-/// Returns begin and end of a line's label along x: next to the line, on the side with room.
+/// Returns the extent in x of a line's label, placed on the side of the line that has room.
 glm::vec2 extent_of_word(const CurveAxes& axes, double intensity, const char* word)
 {
     const float x = axes.x_of(intensity), width = ImGui::CalcTextSize(word).x, gap = 0.25f * ImGui::GetFontSize();
@@ -156,7 +156,7 @@ void draw_threshold(const CurveAxes& axes, double intensity, const char* word, f
     list.AddText({left, top}, color, word);
 }
 
-/// Draws how far density painting raises values at the paint threshold.
+/// Marks how far density painting raises the values of voxels that lie at the paint threshold.
 void draw_density_offset(const CurveAxes& axes, const Model& model, ImDrawList& list)
 {
     const auto& density = model.brush().density;
@@ -242,7 +242,7 @@ void drag(const CurveAxes& axes, TransferCurve& curve, const Model& model, const
     }
 }
 
-/// The wheel shifts all points, slowly with Shift. The panel itself does not scroll under the mouse.
+/// The wheel shifts all points (slowly with Shift). The panel itself does not scroll while the mouse is over the curve.
 void use_wheel(TransferCurve& curve, const Model& model, const WidgetState& state, Actions& actions)
 {
     ImGuiIO& io = ImGui::GetIO();
@@ -310,7 +310,7 @@ std::string digits(double value)
     return text;
 }
 
-/// Draws buttons that choose, add and remove points without the mouse, after the other items of the line.
+/// Draws buttons that select, add and remove points without the mouse, at the end of the line.
 void point_buttons(const Model& model, WidgetState& state, Actions& actions)
 {
     TransferCurve curve(model.session.transfer_function);
@@ -375,7 +375,7 @@ void unpainted(const Model& model, Actions& actions)
         "through.");
 }
 
-/// Draws number fields of the point last touched.
+/// Draws number fields for the point that was selected or moved last.
 void edit_point(const Model& model, size_t index, Actions& actions)
 {
     const auto before = model.session.transfer_function.points();

@@ -36,7 +36,7 @@ bool stereo_controls(StereoSettings& stereo, bool& is_reset, Actions& actions)
     return is_other;
 }
 
-/// Draws sliders that select the slices: they set the probe's position, per axis, in voxels from 0.
+/// Draws sliders for the slices, one per axis, in voxels from 0. They move the probe, through which the slices pass.
 void slice_sliders(const Model& model, Actions& actions)
 {
     for (int axis = 2; axis >= 0; --axis) {

@@ -68,7 +68,7 @@ void force_plot(const HandView& hand, const ServoState& servo)
                 double(*std::ranges::max_element(bars)));
     const ImVec2 size{ImGui::GetContentRegionAvail().x, 3.0f * ImGui::GetFontSize()};
     ImGui::PushStyleVar(ImGuiStyleVar_DisabledAlpha, 1.0f);
-    ImGui::BeginDisabled();  // suppresses the plot's own tooltip, which would name bars by their numbers
+    ImGui::BeginDisabled();  // suppresses the plot's own tooltip, which would number the bars
     ImGui::PlotLines("##force", bars.data(), int(bars.size()), 0, nullptr, 0.0f, highest, size);
     ImGui::EndDisabled();
     ImGui::PopStyleVar();
@@ -76,13 +76,13 @@ void force_plot(const HandView& hand, const ServoState& servo)
         ImGui::SetTooltip("The last five seconds, the newest at the right; the upper edge is %.1f N.", double(highest));
 }
 
-/// Draws a plot on a logarithmic scale, so that one late tick in a million is visible.
+/// Draws a plot with a logarithmic scale, on which one late tick in a million is still visible.
 void lateness_plot(const TimeHistogram& lateness)
 {
     std::array<float, TimeHistogram::BINS> heights{};
     for (size_t bin = 0; bin < heights.size(); ++bin) heights[bin] = std::log1p(float(lateness.counts[bin]));
     const ImVec2 size{ImGui::GetContentRegionAvail().x, 2.2f * ImGui::GetFontSize()};
-    // A disabled plot does not show its own tooltip, which would give the logarithms.
+    // Disabling the plot suppresses its own tooltip, which would show logarithms.
     ImGui::PushStyleVar(ImGuiStyleVar_DisabledAlpha, 1.0f);
     ImGui::BeginDisabled();
     ImGui::PlotHistogram("##lateness", heights.data(), int(heights.size()), 0, nullptr, 0.0f, FLT_MAX, size);

@@ -1,4 +1,4 @@
-// Settings of touch: guidance, modes of pulling, groups, and where tools act.
+// Settings of touch: guidance, modes of the pull, groups that are felt, and where tools act.
 
 #include <algorithm>
 #include <cmath>
@@ -80,7 +80,7 @@ void finer(const Model& model, Actions& actions)
     ImGui::TreePop();
 }
 
-/// Selects the groups that are felt: all, or the ticked ones.
+/// Selects the groups that can be felt: all groups, or the ticked ones.
 void groups(const Model& model, Actions& actions)
 {
     const std::vector<uint8_t>& felt = model.session.probe.touch.groups;
