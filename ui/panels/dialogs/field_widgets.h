@@ -8,10 +8,10 @@
 
 namespace shvr::ui {
 
-/// Draws the keys, each with its name at the left, and changes their values. `beside`: a path without suffix, such as
-/// "/scans/spike", from which choosers begin and form the names of new files; empty: none. Keys that need a form of
-/// their own (Fields::other, lists) are omitted. Returns whether a chooser of one of the keys was in front; an Escape
-/// then closed that chooser. `begins`: gives the keyboard to the first path, with all text typed from now on.
+/// Draws the keys, each with its name at the left, and changes their values. The path parameter, without suffix
+/// ("/scans/spike"), is where choosers begin and from which they form the names of new files; empty: none. Keys that
+/// need a form of their own (Fields::other, lists) are omitted. Returns whether a chooser of one of the keys was in
+/// front; an Escape then closed it. `begins`: gives the keyboard to the first path, with all text typed from now on.
 bool draw_fields(const Fields::Visit& visit, const std::filesystem::path& beside = {}, bool begins = false);
 
 /// Returns whether Enter was pressed in a dialog that is in front, which confirms the dialog.
