@@ -39,7 +39,7 @@ uint64_t swapped64(uint64_t bits)
     return __builtin_bswap64(bits);
 }
 
-/// Counts, for each byte order, the pairs of neighbours along x that are closer to each other in that order.
+/// Counts pairs of neighbouring voxels along x by the byte order in which their two values are closer to each other.
 struct Votes {
     int64_t little = 0;
     int64_t big = 0;
@@ -89,7 +89,7 @@ void swap_bytes(std::span<std::byte> voxels, size_t voxel_bytes)
 
 std::string byte_order_warning(const VolumeInfo& info, const VoxelBytes* bytes)
 {
-    constexpr int64_t ROWS = 64;  // starts in the middle, since the first slices may be air
+    constexpr int64_t ROWS = 64;  // samples rows of the middle slice, since the first slices may be air
     constexpr int64_t MAX_VOXELS = 4096;
     Votes votes;
     const auto voxel_bytes = int64_t(bytes_of(info.type));

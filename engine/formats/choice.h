@@ -1,5 +1,5 @@
 #pragma once
-// The choices of a file that holds several volumes, for callers that can ask the user if none was chosen.
+// The choices that a file with several volumes offers, for callers that can ask the user if none was made.
 
 #include <string>
 #include <utility>
@@ -16,7 +16,7 @@ struct Choice {
     std::vector<std::string> values;    ///< each chooses one
     std::vector<std::string> titles{};  ///< display titles of the values
 
-    /// Choices 1, 2, ...; titles show names next to the numbers.
+    /// Returns a choice with the values 1 to `count`; its titles show the names next to the numbers.
     static Choice numbered(std::string key, int64_t count, const std::vector<std::string>& names = {})
     {
         Choice choice{std::move(key), {}};

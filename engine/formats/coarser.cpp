@@ -12,7 +12,7 @@ VolumeInfo info_of_level(const VolumeSource& source, int level)
 {
     VolumeInfo info = source.info();
     const double wider = double(int64_t{1} << level);
-    // The first coarse voxel's centre is the centre of the fine voxels that it covers.
+    // Moves the origin: a coarse voxel is centred on the 2^level fine voxels per axis that it covers.
     info.origin += info.directions * (0.5 * (wider - 1.0) * info.spacing);
     info.size = size_of_level(info.size, level);
     info.spacing *= wider;

@@ -11,11 +11,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Limits memory and time: each file takes a hundred bytes for its name and a lookup.
+/// Bounds memory and time: each file costs about a hundred bytes for its name, and one lookup in the file system.
 constexpr int64_t MAX_FILES = 65536;
 
-/// The conversion in a pattern: %d, %3d or %03d, as printf writes it. Only one is allowed. The pattern is untrusted, so
-/// it is never passed to printf.
+/// A file name pattern with one printf conversion (%d, %3d or %03d), split at the conversion. The pattern is untrusted,
+/// so it is never passed to printf.
 struct Pattern {
     std::string before{}, after{};
     size_t width = 0;
@@ -115,7 +115,7 @@ std::vector<fs::path> files_of_list(const HeaderFields& fields, const char* fiel
     return files;
 }
 
-/// The number of axes of each file, if the field's last word states it ("2", or "2D" as MetaImage writes it).
+/// Returns the number of axes of each file, if the field's last word states it ("2", or "2D" in MetaImage).
 int64_t axes_of_a_file(const HeaderFields& fields, const char* field, const std::vector<std::string_view>& words,
                        size_t index)
 {

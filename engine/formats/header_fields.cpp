@@ -20,7 +20,7 @@ namespace {}  // namespace
 
 std::string read_head(const std::filesystem::path& path, size_t max_bytes)
 {
-    // Without O_NONBLOCK, opening a FIFO blocks until a writer appears, before we can detect that it is a FIFO.
+    // Without O_NONBLOCK, opening a FIFO would block until a writer appears, before it can be recognised as a FIFO.
     const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
     if (!file) fail(path.string(), ": cannot be opened: ", reason_of(errno));
     struct stat status {};

@@ -1,6 +1,6 @@
 #pragma once
-// Functions shared by the readers of text headers: the start of a file, fields by name, spacing and unit. Every refusal
-// is one sentence: file, field, value found, value expected. Any thread may call these.
+// Functions shared by the readers of text headers: the start of a file, fields by name, spacing and unit. Each error is
+// one sentence with the file, the field, the value found and the value expected. Any thread may call these.
 
 #include <filesystem>
 #include <map>
@@ -19,7 +19,7 @@ namespace shvr {
 /// The maximum length of a header.
 inline constexpr size_t MAX_HEADER_BYTES = size_t{1} << 20;
 
-/// The first bytes of a file, at most `max_bytes`. Fails if `path` is not a regular file or cannot be read.
+/// Returns the first bytes of a file, at most `max_bytes`. Fails if `path` is not a regular file or cannot be read.
 std::string read_head(const std::filesystem::path& path, size_t max_bytes = MAX_HEADER_BYTES);
 
 /// The fields of one header. Names are case-insensitive.
@@ -41,12 +41,12 @@ public:
     Size3 size(const char* name) const;                                ///< required, each 1 ... 2^20
     std::vector<int64_t> sizes(const char* name, size_t count) const;  ///< like `size`, for `count` axes
     VoxelType type(const char* name) const;                            ///< required
-    /// Like `type`, but may be an integer of 64 bits: then the type its bits are read as (stored_numbers.h), and which.
+    /// Like `type`, but allows 64-bit integers: returns the type for reading their bits, and their kind.
     std::pair<VoxelType, StoredNumber> type_or_wide(const char* name) const;
     bool flag(const char* name, bool fallback) const;
     glm::dvec3 spacing(const char* name) const;  ///< three numbers, finite and above 0
 
-    /// The voxel file that the header names (`file_stated`).
+    /// Returns the path of the voxel file that the header names (see `file_stated`).
     std::filesystem::path data_file(const char* name) const;
 
 private:
@@ -59,15 +59,15 @@ private:
 /// in the header's folder is used instead. `stated` may be a Windows path.
 std::filesystem::path file_stated(const std::filesystem::path& header, const std::string& stated);
 
-/// Sets spacing and unit of `info`, and adds a warning for each of them that the file does not state. A spacing without
-/// a unit is in `usual_unit`, except that a spacing of 1 1 1 without a unit is in voxels.
+/// Sets spacing and unit of `info`, and adds a warning if the file does not state one of them. A spacing without a unit
+/// is assumed to be in `usual_unit`, but in voxels if it is 1 1 1.
 void apply_spacing(VolumeInfo& info, const std::optional<glm::dvec3>& spacing, const std::optional<std::string>& unit,
                    const char* usual_unit);
 
-/// Adds the warning that a file given as a scan holds labels; `holds` begins it: "the image holds labels". Adds nothing
-/// if a warning says so already: a project of labels keeps the warnings of its source.
+/// Warns that a file opened as a scan holds labels. The warning begins with `holds`, as in "the image holds labels".
+/// Does nothing if `warnings` already says so, as in a project, which keeps the warnings of its source.
 void warn_of_labels(std::vector<std::string>& warnings, const char* holds);
-/// Likewise for what a file of this program states as its content: "mask" or "offsets". Others add nothing.
+/// Likewise for files of this program that state their content: warns for "mask" and "offsets", ignores other values.
 void warn_of_content(std::vector<std::string>& warnings, std::string_view content);
 
 inline constexpr const char* NO_BYTE_ORDER = "no byte order stated; little-endian assumed";

@@ -23,7 +23,7 @@ constexpr size_t INPUT_BYTES = 65536;
 constexpr int ANY_WRAPPING = 15 + 32;
 constexpr int GZIP_WRAPPING = 15 + 16;
 
-/// A decoder at some position in the compressed bytes. A copy continues from the original's position.
+/// A decoder at some position in the compressed bytes. A copy of a decoder continues from that position.
 class Decoder {
 public:
     Decoder(const InputFile& file, int64_t offset) : file_(file), input_at_(offset)
@@ -45,7 +45,7 @@ public:
 
     int64_t output_at() const { return output_at_; }
 
-    /// Decodes the next bytes; returns fewer at the end of the stream.
+    /// Decodes the next bytes; returns their number, which is smaller than requested only at the end of the stream.
     size_t decode(std::span<std::byte> bytes)
     {
         size_t done = 0;
@@ -57,7 +57,7 @@ public:
         return done;
     }
 
-    /// Verifies the checksum if only the checksum is left to read.
+    /// Called after the last byte: lets zlib read the checksum that follows, and fails if it does not match.
     void finish()
     {
         std::byte left_over{};
@@ -105,7 +105,7 @@ private:
         stream_.avail_in = static_cast<uInt>(count);
     }
 
-    /// Continues with the next member: gzip files may be concatenated. Like gzip, ignores any other trailing bytes.
+    /// Continues with the next member, since gzip files may be concatenated. Like gzip, ignores other trailing bytes.
     void begin_next_member()
     {
         std::array<std::byte, 2> next{};
@@ -168,12 +168,12 @@ private:
             while (chunk_of(decoder_->output_at()) < number) decode_next();
             return decode_next();
         } catch (...) {
-            decoder_.reset();  // the decoder stopped in the middle of a chunk
+            decoder_.reset();  // unusable: it stopped in the middle of a chunk
             throw;
         }
     }
 
-    /// Moves the decoder to the start of chunk `number`, or of the nearest earlier chunk with a saved state.
+    /// Moves the decoder to the start of chunk `number`, or as close before it as the decoder or a saved state allows.
     void go_before(int64_t number) const
     {
         const int64_t state = std::min(number / chunks_between_states_, int64_t(states_.size()) - 1);
@@ -212,7 +212,7 @@ private:
     size_t max_kept_;
 
     mutable std::mutex mutex_;
-    mutable std::unique_ptr<Decoder> decoder_;  ///< at the beginning of a chunk; null: not positioned
+    mutable std::unique_ptr<Decoder> decoder_;  ///< at the start of a chunk; null: no position yet
     mutable std::vector<std::unique_ptr<const Decoder>> states_;
     mutable std::vector<Chunk> kept_;
 };
@@ -257,7 +257,7 @@ std::string inflated_head(const std::filesystem::path& path, size_t max_bytes)
     Decoder decoder(file, 0);
     size_t done = 0;
     try {
-        // Decodes byte by byte, to get all bytes that precede a damaged one.
+        // Decodes one byte at a time, so that all bytes before a damaged one are returned.
         while (done < max_bytes && decoder.decode(bytes.subspan(done, 1)) == 1) ++done;
     } catch (const Error&) {
         // The file's reader will report the problem.

@@ -21,13 +21,13 @@ struct Inflation {
     int64_t kept_bytes = int64_t{32} << 20;
 };
 
-/// Decodes nothing yet. Fails if the data begins with neither a gzip nor a zlib header, or is too short for the
-/// requested bytes: one byte of deflate expands to at most 1032 bytes (zlib's technical notes).
+/// Returns the decoded bytes, which are only decoded when read. Fails if the data has neither a gzip nor a zlib header,
+/// or is too short for the requested bytes: one byte of deflate expands to at most 1032 bytes (zlib's technical notes).
 std::unique_ptr<VoxelBytes> bytes_of_deflated(Inflation inflation);
 
 /// Whether `head` begins like a gzip file.
 bool begins_as_gzip(std::string_view head);
-/// The first decoded bytes of a gzip file, at most `max_bytes`; fewer if the file ends earlier or is damaged.
+/// Returns the first decoded bytes of a gzip file, at most `max_bytes`; fewer if the file ends earlier or is damaged.
 std::string inflated_head(const std::filesystem::path& path, size_t max_bytes);
 
 }  // namespace shvr

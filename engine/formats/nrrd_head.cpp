@@ -14,7 +14,7 @@ namespace {
 constexpr std::string_view SEGMENT = "Segment";
 constexpr int64_t MAX_SEGMENTS = 1 << 20;
 
-/// Backslashes and line ends are escaped in keys and values.
+/// Undoes the escapes that NRRD uses for backslashes and line ends in keys and values.
 std::string unescaped(std::string_view text)
 {
     std::string plain;

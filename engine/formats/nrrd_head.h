@@ -1,7 +1,7 @@
 #pragma once
-// The header of an NRRD file, line by line (http://teem.sourceforge.net/nrrd/format.html), and the segments that 3D
-// Slicer describes in the header. A program that replaces the file can thus keep fields that it does not understand.
-// Any thread.
+// Reads the header of an NRRD file line by line (http://teem.sourceforge.net/nrrd/format.html), and the segments that
+// 3D Slicer describes in it. A program that replaces the file can thus keep the fields that it does not understand. Any
+// thread may call these.
 
 #include <cstdint>
 #include <filesystem>
@@ -25,31 +25,31 @@ struct NrrdHead {
     bool operator==(const NrrdHead&) const = default;
 };
 
-/// Null if there is no such file, or it is not NRRD. Lines that are not comments, fields or pairs are left out.
+/// Returns null if the file does not exist or is not NRRD. Lines that are no comments, fields or pairs are left out.
 std::optional<NrrdHead> read_nrrd_head(const std::filesystem::path& path);
-/// The header at the start of a text; null if it is not NRRD.
+/// Returns the header at the start of a text; null if it is not NRRD.
 std::optional<NrrdHead> nrrd_head_in(std::string_view text);
-/// The lines from which `nrrd_head_in` reads an equal header.
+/// Returns lines from which `nrrd_head_in` reads an equal header.
 std::vector<std::string> lines_of(const NrrdHead& head);
 /// "key:=value", escaped.
 std::string spelled(const NrrdPair& pair);
-/// Sets the value of a key, or adds it at the end.
+/// Sets the value of a key, or appends the pair if the key is missing.
 void set_pair(std::vector<NrrdPair>& pairs, std::string_view key, std::string value);
 
 /// A segment: "Segment3_Name", "Segment3_LabelValue" and so on.
 struct NrrdSegment {
     int64_t number = 0;       ///< 3
-    int64_t label_value = 0;  ///< value of its voxels in its layer; if not stated: `number` + 1
+    int64_t label_value = 0;  ///< value of the segment's voxels in its layer; default: `number` + 1
     int64_t layer = 0;        ///< index along the file's first axis; overlapping segments lie in different layers
-    /// Group of the segment's voxels in a mask: its label value; or, if a segment of another layer has the same label
-    /// value, the next free number above all label values.
+    /// The group that holds the segment's voxels in a mask: its label value or, if a segment of another layer has the
+    /// same label value, the next free number above all label values.
     int64_t group = 0;
     std::string name{};
     std::string color{};  ///< "0.5 0.68 0.5": sRGB components; empty if not stated
 };
-/// The segments in the order of their first keys in the header.
+/// Returns the segments in the order in which their first keys appear in the header.
 std::vector<NrrdSegment> segments_of(const NrrdHead& head);
-/// The pairs of a segment, without "Segment3_" in their keys.
+/// Returns the key/value pairs of a segment, without the prefix "Segment3_" in their keys.
 std::vector<NrrdPair> pairs_of(const NrrdHead& head, const NrrdSegment& segment);
 std::string segment_key(const NrrdSegment& segment, std::string_view name);
 

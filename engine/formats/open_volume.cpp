@@ -18,13 +18,13 @@ namespace {
 struct Reader {
     const char* name;
     std::unique_ptr<VolumeSource> (*open)(const std::filesystem::path& path, const OpenOptions& options);
-    bool reads_folders = false;                 ///< readers without this flag are not tried on folders
-    bool states_size = true;                    ///< files state the volume's size; if not, a side-car or user does
+    bool reads_folders = false;                 ///< whether the reader is tried on folders
+    bool states_size = true;                    ///< false: a side-car or the user states the volume's size
     std::array<std::string_view, 4> endings{};  ///< of names, in lower case
-    std::array<std::string_view, 4> headers{};  ///< extensions of headers that state the size for such files
+    std::array<std::string_view, 4> headers{};  ///< extensions of separate header files that state the size
 };
 
-/// In the order in which they are tried: headers come before the raw voxels that they may describe.
+/// The readers in the order in which they are tried: headers come before the raw voxels that they may describe.
 constexpr Reader READERS[] = {
     {"OME-Zarr", open_ome_zarr, true, true, {".ozx", ".zip"}},
     {"TIFF", open_tiff, true, true, {".tif", ".tiff"}},

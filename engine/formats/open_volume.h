@@ -8,7 +8,7 @@
 
 namespace shvr {
 
-/// Layout of a file of raw voxels that has no side-car: "256x256x108:int16[:big|little][:OFFSET]".
+/// Layout of a raw file without a side-car, in the user's form "256x256x108:int16[:big|little][:OFFSET]".
 struct RawLayout {
     Size3 size{0};
     VoxelType type = VoxelType::uint8;
@@ -18,37 +18,37 @@ struct RawLayout {
     std::string unit = "voxel";
     bool operator==(const RawLayout&) const = default;
 };
-/// Fails with a `UsageError` that shows the expected form.
+/// Fails with a `UsageError` that shows the form above.
 RawLayout parse_raw_layout(const std::string& text);
 
-/// What is expected where an address cannot stand.
+/// The "expected ..." part of messages about an address in a place that only accepts local paths.
 inline constexpr const char* NO_ADDRESS =
     "the path of a file or folder on this machine, since only volumes are read over a network";
 
-/// Whether `path`, judged by its name, is a zipped OME-Zarr (.ozx, .zip) or leads into one. A path into an archive,
-/// such as scan.ozx/0, does not exist in the file system. Reads nothing.
+/// Whether `path`, judged by its name, is a zipped OME-Zarr (.ozx, .zip) or a path inside one. A path inside an
+/// archive, such as scan.ozx/0, does not exist in the file system. Reads nothing.
 bool leads_into_archive(const std::filesystem::path& path);
-/// A message for a project that was zipped as a whole, or lies behind an address, stating that only its image is read;
+/// Returns a message that only the image is read, for a project that was zipped as a whole or lies behind an address;
 /// empty for anything else. Reads the archive's directory, or asks the server.
 std::string archived_project(const std::filesystem::path& path);
 
-/// Name of the format that a file name implies, such as "NIfTI" for scan.nii.gz; empty if it implies none. The file may
-/// still be of another format, or of a format without an extension of its own. Reads nothing.
+/// Returns the name of the format that a file name implies, such as "NIfTI" for scan.nii.gz; empty if none. The file
+/// may be in another format all the same, and some formats have no extension of their own. Reads nothing.
 std::string_view format_of_name(std::string_view name);
 inline bool is_volume_name(std::string_view name)
 {
     return !format_of_name(name).empty();
 }
 
-/// Whether files of that name, gzipped or not, state the size of their volume (raw voxels do not). Reads nothing.
+/// Whether files with such a name, gzipped or not, state the size of their volume; raw voxels do not. Reads nothing.
 bool name_states_size(std::string_view name);
-/// The formats whose files state the volume's size, for dialogs: "OME-Zarr, TIFF, ... and JPEG" (`conjunction`: "and").
+/// Returns the formats whose files state the volume's size: "OME-Zarr, TIFF, ... and JPEG" (`conjunction`: "and").
 std::string format_names(std::string_view conjunction);
 
-/// Fails if no reader knows the file (the message lists the formats tried), or if a reader finds its file broken.
+/// Fails if no reader recognises the file (the message lists the formats tried), or if a reader finds it damaged.
 std::unique_ptr<VolumeSource> open_volume(const std::filesystem::path& path, const OpenOptions& options = {});
-/// `path` is one file; or the first of numbered files ("head.1", "slice007.raw") with one slice each; or a folder of
-/// such files, in the order of the numbers in their names. OFFSET bytes are skipped in each file.
+/// Opens raw voxels. `path` is one file, the first of numbered files with one slice each ("head.1", "slice007.raw"), or
+/// a folder of such files, sorted by the numbers in their names. OFFSET bytes are skipped in each file.
 std::unique_ptr<VolumeSource> open_raw(const std::filesystem::path& path, const RawLayout& layout);
 
 }  // namespace shvr

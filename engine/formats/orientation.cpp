@@ -11,7 +11,7 @@
 namespace shvr {
 namespace {
 
-/// Smaller rotations are considered rounding errors in the file's numbers.
+/// Rotations and shears below these angles are considered rounding errors in the file's numbers.
 constexpr double MIN_TURN_DEGREES = 0.05;
 constexpr double MIN_SHEAR_DEGREES = 0.1;
 
@@ -25,7 +25,7 @@ std::string with_one_decimal(double number)
     return sentence(std::fixed, std::setprecision(1), number);
 }
 
-/// The axis of the frame that is nearest to `direction`.
+/// Returns the axis of the frame that is nearest to `direction`.
 int nearest_axis(const glm::dvec3& direction)
 {
     const glm::dvec3 size = glm::abs(direction);
@@ -37,7 +37,7 @@ void warn_of_turn(VolumeInfo& info)
     double most = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
         const glm::dvec3& direction = info.directions[axis];
-        // Uses atan2, since acos near 1 cannot resolve small angles.
+        // Uses atan2, because acos is inaccurate for small angles.
         const double along = std::abs(direction[nearest_axis(direction)]);
         const double across = std::sqrt(std::max(0.0, glm::dot(direction, direction) - along * along));
         most = std::max(most, degrees_of(std::atan2(across, along)));
@@ -92,7 +92,7 @@ public:
         mirrored.lower[axis_] = info().size[axis_] - box.upper[axis_];
         mirrored.upper[axis_] = info().size[axis_] - box.lower[axis_];
         source_->read(mirrored, voxels);
-        // Reverses the order of the runs of `run_bytes` along the axis: swaps the first run with the last, and so on.
+        // Reverses the runs of `run_bytes` bytes along the axis: swaps the first run with the last, and so on.
         const Size3 extent = box.size();
         auto run_bytes = int64_t(bytes_of(info().type));
         for (int axis = 0; axis < axis_; ++axis) run_bytes *= extent[axis];

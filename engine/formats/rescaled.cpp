@@ -11,7 +11,7 @@
 namespace shvr {
 namespace {
 
-/// Number of voxels that are converted through doubles at a time.
+/// Number of voxels to convert at a time, through a buffer of doubles.
 constexpr size_t BLOCK = 512;
 
 template <class T>
@@ -59,8 +59,8 @@ public:
     {
         const VoxelType stored = source_->info().type;
         const size_t count = voxels.size() / bytes_of(info().type);
-        // Stored voxels are not larger than intensities, so they are read into the end of the output; no stored voxel
-        // is overwritten before it is used.
+        // Reads the stored voxels into the end of the output, where they fit because they are not larger than
+        // intensities. Conversion proceeds from the front, so it never overwrites a stored voxel that is still needed.
         const std::span<std::byte> tail = voxels.last(count * bytes_of(stored));
         source_->read(box, tail);
         rescale_voxels(stored, tail, rescale_, info().type, voxels);

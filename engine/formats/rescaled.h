@@ -1,5 +1,5 @@
 #pragma once
-// Intensities stored in a file as numbers with a slope and an intercept (NIfTI, DICOM). Any thread may call these.
+// Converts the numbers in a file to intensities by a slope and an intercept (NIfTI, DICOM). Any thread may call these.
 
 #include <memory>
 #include <span>
@@ -17,17 +17,17 @@ struct Rescale {
     bool changes_nothing() const { return slope == 1.0 && intercept == 0.0; }
 };
 
-/// The type that holds the intensities, never smaller than the stored type. Integers stay integers if slope and
-/// intercept are whole numbers. Otherwise, 8- and 16-bit types and float32 become float32, and larger types float64.
+/// Returns the type that holds the intensities, never smaller than the stored type. Integers stay integers if slope and
+/// intercept are whole. Otherwise, 8- and 16-bit types and float32 become float32, and larger types become float64.
 VoxelType rescaled_type(VoxelType stored, const Rescale& rescale);
 
-/// Converts `stored` to `intensities`. If `to` is not smaller than `from`, `stored` may occupy the end of the memory of
+/// Converts `stored` to `intensities`. If `to` is not smaller than `from`, `stored` may be the end of the memory of
 /// `intensities`. `to` must be able to hold the results.
 void rescale_voxels(VoxelType from, std::span<const std::byte> stored, const Rescale& rescale, VoxelType to,
                     std::span<std::byte> intensities);
 
-/// Returns `source`, which must have one level, with its voxels converted to intensities; `source` itself if nothing
-/// changes. A warning is added if integers become floats.
+/// Returns `source`, which must have one level, with its voxels converted to intensities, or `source` itself if nothing
+/// changes. Adds a warning if integers become floats.
 std::unique_ptr<VolumeSource> rescaled(std::unique_ptr<VolumeSource> source, const Rescale& rescale);
 
 }  // namespace shvr

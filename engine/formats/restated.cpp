@@ -35,7 +35,7 @@ public:
     }
     std::optional<VolumeStatistics> statistics() const override
     {
-        // The source's statistics were measured with its own fill value.
+        // With another fill value, the source's statistics no longer apply.
         return info().nodata ? std::nullopt : source_->statistics();
     }
 
@@ -65,7 +65,7 @@ bool is_same(const VolumeInfo& a, const VolumeInfo& b)
     return ((from && to) || a.unit == b.unit) && glm::all(glm::lessThanEqual(apart, TOLERANCE * b.spacing));
 }
 
-/// The value as stored in voxels of `type`: -3.4e38, for instance, is rounded in float32.
+/// Returns the value as voxels of `type` hold it: -3.4e38, for instance, is rounded in float32.
 double as_voxel(VoxelType type, double value)
 {
     constexpr double MOST = std::numeric_limits<float>::max();

@@ -55,8 +55,8 @@ public:
             source_->read_level(level, box, voxels);
             return widen_integers(number_, voxels, file_);
         }
-        // The stored numbers take half the space, so they are read into the end of the output; no stored number is
-        // overwritten before it is used.
+        // Reads the stored numbers into the second half of the output, since they take half the space. Conversion
+        // proceeds from the front, so it never overwrites a stored number that is still needed.
         const size_t count = voxels.size() / sizeof(float);
         const std::span<std::byte> halves = voxels.last(count * sizeof(uint16_t));
         source_->read_level(level, box, halves);
@@ -99,7 +99,7 @@ const char* name_of(StoredNumber number)
 
 std::optional<StoredNumber> wide_integer_of(std::string_view name)
 {
-    // NRRD separates words by spaces, MetaImage by underscores, after "MET_".
+    // Makes both spellings equal: NRRD separates words by spaces, MetaImage by underscores, after the prefix "MET_".
     std::string spaced = lower_case(std::string(name));
     std::replace(spaced.begin(), spaced.end(), '_', ' ');
     std::string plain;
@@ -143,7 +143,7 @@ std::optional<uint16_t> half_of(double value)
     if (std::isinf(size)) return uint16_t(sign | INFINITE);
     const int exponent = size > 0.0 ? std::max(std::ilogb(size), -14) : -14;
     if (exponent > 15) return std::nullopt;
-    // If the fraction is rounded up to 2048, it carries into the exponent.
+    // A fraction that is rounded up to 2048 carries into the exponent, as the sum below does correctly.
     const int fraction = int(std::nearbyint(std::ldexp(size, 10 - exponent)));
     const int bits = ((exponent + 14) << 10) + fraction;
     if (bits >= INFINITE) return std::nullopt;

@@ -24,18 +24,18 @@ using gdcm::DataSet;
 using gdcm::Tag;
 
 constexpr int64_t MAX_FRAMES = 65536;
-/// A slice above this size may be at most MAX_EXPANSION times its file's size; no codec compresses real slices better.
+/// Slices above LARGE_SLICE bytes may be at most MAX_EXPANSION times their file's size; no codec exceeds that.
 constexpr int64_t LARGE_SLICE = int64_t{64} << 20;
 constexpr int64_t MAX_EXPANSION = 1000;
 
 // ---- Values ---------------------------------------------------------------------------------------------------------
 
-/// Looks up values in a data set; in a multi-frame file, first in the per-frame and shared functional groups.
+/// Looks up values in a list of data sets, of which the first that has the value counts.
 class Values {
 public:
     explicit Values(std::vector<const DataSet*> sets) : sets_(std::move(sets)) {}
 
-    /// The text up to a NUL, without padding spaces, in UTF-8.
+    /// Returns the text up to the first NUL, without padding spaces, in UTF-8.
     std::string text(const Tag& tag) const
     {
         const gdcm::ByteValue* value = find(tag);
@@ -43,7 +43,7 @@ public:
         const std::string_view bytes(value->GetPointer(), value->GetLength());
         return dicom_text(trimmed(bytes.substr(0, bytes.find('\0'))), character_set());
     }
-    /// Decimal strings, separated by backslashes; empty if one of them is not a number.
+    /// Returns numbers stored as text, separated by backslashes; empty if any of them is not a number.
     std::vector<double> decimals(const Tag& tag) const
     {
         std::string words = text(tag);
@@ -62,7 +62,7 @@ public:
         return numbers.size() == 1 ? std::optional(numbers[0]) : std::nullopt;
     }
     int64_t whole(const Tag& tag) const { return whole_of(text(tag)).value_or(0); }
-    /// A binary value: uint16_t for type US, uint32_t for UL.
+    /// Returns a binary number: `Number` is uint16_t for type US, and uint32_t for UL.
     template <class Number>
     int64_t number(const Tag& tag, int64_t fallback) const
     {
@@ -100,8 +100,8 @@ Sequence sequence_of(const DataSet& set, const Tag& tag)
     return set.FindDataElement(tag) ? set.GetDataElement(tag).GetValueAsSQ() : Sequence();
 }
 
-/// The places that may state a value of one frame: the per-frame functional groups, the shared functional groups
-/// (PS3.3, C.7.6.16), and the file's own data set.
+/// The data sets that may state a value of one frame, in order of precedence: the per-frame functional groups, the
+/// shared functional groups (PS3.3, C.7.6.16), and the file's own data set.
 class FrameValues {
 public:
     explicit FrameValues(const DataSet& file)
@@ -145,7 +145,7 @@ private:
     fail(file.path.string(), ": ", field, " is ", found, "; expected ", expected);
 }
 
-/// Reads the type of Float Pixel Data or Double Float Pixel Data (PS3.3, C.7.6.24 and C.7.6.25).
+/// Returns the voxel type of a file with Float Pixel Data or Double Float Pixel Data (PS3.3, C.7.6.24 and C.7.6.25).
 VoxelType read_float_type(DicomFile& file, int64_t allocated, std::optional<ValueRange>& stored)
 {
     const bool is_double = file.stored.layout.numbers == DicomLayout::Numbers::float64;
@@ -225,7 +225,7 @@ DicomFrame read_frame(const Values& values, DicomFile& file, const ValueRange& s
         spacing = values.decimals(Tag(0x0018, 0x1164));
         file.spacing_is_at_detector = spacing.size() == 2;
     }
-    // The first number is the distance from row to row, along y.
+    // DICOM states the spacing between rows, along y, before the spacing between columns, along x.
     if (spacing.size() == 2 && spacing[0] > 0.0 && spacing[1] > 0.0) frame.spacing = glm::dvec2(spacing[1], spacing[0]);
     frame.distance = read_distance(values);
     frame.time_number = values.number<uint32_t>(Tag(0x0020, 0x9128), 0);

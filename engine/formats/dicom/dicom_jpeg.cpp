@@ -8,7 +8,7 @@
 namespace shvr {
 namespace {
 
-constexpr std::string_view PREFIX = "1.2.840.10008.1.2.4.";  ///< prefix of the transfer syntaxes of JPEG's standards
+constexpr std::string_view PREFIX = "1.2.840.10008.1.2.4.";  ///< prefix of the UIDs of all JPEG transfer syntaxes
 
 enum Marker : uint8_t {
     TEM = 0x01,
@@ -107,7 +107,7 @@ private:
     {
         if (length < 8) refuse("has a segment with a wrong length", at_);
         const int bits = byte(at_ + 2), components = byte(at_ + 7);
-        // Some writers store 12 bits in baseline frames, too.
+        // Baseline frames may have 12 bits as well: the standard limits them to 8, but some writers store 12.
         const bool is_known = marker == PROGRESSIVE
                                   ? bits == 8 || bits == 12
                                   : (marker <= LOSSLESS || marker == LS_FRAME) && bits >= 2 && bits <= 16;
@@ -123,7 +123,7 @@ private:
 
 bool is_jpeg(const std::string& transfer_syntax)
 {
-    // .50 to .66: processes 1 to 29; .70: process 14 with predictor 1; .80, .81: JPEG-LS. Above: other standards.
+    // .50 to .66: processes 1 to 29; .70: process 14 with predictor 1; .80, .81: JPEG-LS; .90 and up: JPEG 2000 etc.
     return transfer_syntax.size() == PREFIX.size() + 2 && transfer_syntax.starts_with(PREFIX) &&
            transfer_syntax[PREFIX.size()] >= '5' && transfer_syntax[PREFIX.size()] <= '8';
 }

@@ -12,7 +12,7 @@
 namespace shvr {
 namespace {
 
-/// Memory from which OpenJPEG reads, instead of a file.
+/// An input stream for OpenJPEG that reads from memory instead of a file.
 struct Input {
     std::span<const std::byte> bytes;
     size_t at = 0;
@@ -54,7 +54,7 @@ using Codec = std::unique_ptr<opj_codec_t, Destroy<opj_destroy_codec>>;
 using Stream = std::unique_ptr<opj_stream_t, Destroy<opj_stream_destroy>>;
 using Image = std::unique_ptr<opj_image_t, Destroy<opj_image_destroy>>;
 
-/// Whether the picture begins with the first box of every JP2 file (annex I.5.1).
+/// Whether the picture is a JP2 file, by its first box (annex I.5.1), rather than a bare codestream.
 bool is_in_boxes(std::span<const std::byte> picture)
 {
     constexpr unsigned char SIGNATURE[] = {0, 0, 0, 12, 'j', 'P', ' ', ' ', 13, 10, 0x87, 10};
@@ -74,7 +74,7 @@ Stream stream_of(Input& input)
     return stream;
 }
 
-/// Checks the picture's own header against the DICOM header.
+/// Checks that the picture's own header agrees with the DICOM header.
 void check_header(const std::string& subject, const opj_image_t& image, int64_t columns, int64_t rows, size_t bytes)
 {
     const int64_t wide = int64_t(image.x1) - image.x0, high = int64_t(image.y1) - image.y0;

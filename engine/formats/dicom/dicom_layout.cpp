@@ -23,7 +23,7 @@ constexpr uint32_t ITEM = 0xfffee000;
 constexpr uint32_t END_OF_ITEM = 0xfffee00d;
 constexpr uint32_t END_OF_SEQUENCE = 0xfffee0dd;
 
-/// Types of elements (PS3.5, 6.2): those with four-byte lengths, and those with two-byte lengths.
+/// Value representations (PS3.5, 6.2): first those with a 4-byte length field, then those with a 2-byte length field.
 constexpr std::string_view LONG_TYPES = "OB OD OF OL OV OW SQ SV UC UN UR UT UV";
 constexpr std::string_view SHORT_TYPES = "AE AS AT CS DA DS DT FD FL IS LO LT PN SH SL SS ST TM UI UL US";
 
@@ -46,12 +46,12 @@ class Walk {
 public:
     explicit Walk(const InputFile& file) : file_(file) {}
 
-    /// `at`: where elements begin. `states_types`: without a file meta group, whether the first element states a type.
+    /// `at`: offset of the first element. `states_types`: used without a file meta group: whether elements state types.
     DicomLayout run(int64_t at, bool states_types)
     {
         constexpr Encoding META{true, false};
         if (group_at(at) != 2) layout_.transfer_syntax = states_types ? "1.2.840.10008.1.2.1" : "1.2.840.10008.1.2";
-        // Walks the file meta group; the first element after the group may use another encoding.
+        // The file meta group has a fixed encoding; the elements after it may use another.
         while (group_at(at) == 2) {
             const Element element = read_element(at, file_.bytes, META);
             if (element.length == UNDEFINED) refuse(element, "a length");
@@ -90,7 +90,7 @@ private:
         return element.value_at + element.length;
     }
 
-    /// Refuses a delimiter with a nonzero length, since GDCM would then read a value.
+    /// Refuses a delimiter with a nonzero length, because GDCM would read that many bytes as a value.
     int64_t after_delimiter(const Element& element) const
     {
         if (element.length != 0) refuse(element, "0, as of every end");
@@ -140,7 +140,7 @@ private:
             element.value_at = at + 12;
             return element;
         }
-        // For unknown types, GDCM guesses lengths differently from this check.
+        // Refuses unknown types, because GDCM and this check would assume different sizes for the length field.
         if (!is_one_of(type, SHORT_TYPES)) {
             fail(file_.path.string(), ": element ", name_of(element.tag), " at byte ", at,
                  " has the value representation ", in_quotes(type), "; expected one that DICOM defines");
@@ -158,10 +158,10 @@ private:
         return text;
     }
 
-    /// Walks elements up to `end`, or to the end of their item. Returns where the next element begins.
+    /// Checks elements up to `end`, or to the end of their item. Returns the offset of the next element.
     int64_t walk_elements(int64_t at, int64_t end, const Encoding& encoding, int depth, bool ends_by_delimiter)
     {
-        constexpr int64_t A_TAG = 4;  // GDCM takes anything that begins with a tag for an element, and then asserts
+        constexpr int64_t A_TAG = 4;  // GDCM treats any bytes that hold a tag as an element, and then asserts
                                       // that the rest is valid
         while (at < end) {
             if (depth == 0 && end - at < A_TAG) return end;  // padding
@@ -184,7 +184,7 @@ private:
             if (element.length == UNDEFINED) refuse(element, "a length, since floats are not compressed");
         }
         const bool is_unknown = std::string_view(element.type.data(), 2) == "UN";
-        // Values of a type unknown to the program that wrote them use the older encoding (PS3.5, 6.2.2).
+        // The content of elements of type UN is in implicit little-endian encoding, in any file (PS3.5, 6.2.2).
         const Encoding inside = is_unknown ? Encoding{false, false} : encoding;
         if (element.length == UNDEFINED) {
             layout_.is_encapsulated |= is_pixels;
@@ -208,7 +208,7 @@ private:
         return (number(&start[0], 2, encoding.big_endian) << 16 | number(&start[2], 2, encoding.big_endian)) == ITEM;
     }
 
-    /// Walks items of a sequence, or fragments of Pixel Data, up to `end` or to their delimiter.
+    /// Checks the items of a sequence, or the fragments of Pixel Data, up to `end` or to their delimiter.
     int64_t walk_items(int64_t at, int64_t end, const Encoding& encoding, int depth, bool ends_by_delimiter,
                        bool are_fragments)
     {
@@ -239,7 +239,7 @@ private:
 
     const InputFile& file_;
     DicomLayout layout_;
-    bool has_offsets_ = false;  ///< the first item of Pixel Data is the offset table
+    bool has_offsets_ = false;  ///< the first item of Pixel Data, the offset table, has been seen
 };
 
 }  // namespace
@@ -255,8 +255,8 @@ namespace {
 
 enum class Bare { no, with_types, without_types };
 
-/// Old files have no preamble. They begin, in little-endian order, either with the first elements of group 8 (without a
-/// file meta group) or with the first elements of the file meta group.
+/// Whether a file without a preamble, as old programs wrote, begins like DICOM in little-endian order: with the first
+/// elements of group 8 (no file meta group), or with the first elements of the file meta group.
 Bare begins_bare(const InputFile& file)
 {
     std::array<std::byte, 8> head{};
@@ -268,7 +268,7 @@ Bare begins_bare(const InputFile& file)
     const std::array<char, 2> type{char(byte(4)), char(byte(5))};
     const bool are_letters = type[0] >= 'A' && type[0] <= 'Z' && type[1] >= 'A' && type[1] <= 'Z';
     if (are_letters && is_one_of({type.data(), 2}, SHORT_TYPES)) return Bare::with_types;
-    constexpr uint32_t LONGEST = 256;  // maximum length of the values of these elements
+    constexpr uint32_t LONGEST = 256;  // longest plausible value of the first elements
     const uint32_t length = byte(4) | byte(5) << 8 | byte(6) << 16 | byte(7) << 24;
     return group == 8 && length > 0 && length <= LONGEST && length % 2 == 0 ? Bare::without_types : Bare::no;
 }
@@ -288,7 +288,7 @@ std::optional<DicomLayout> check_dicom_layout(const InputFile& file)
     try {
         DicomLayout layout = Walk(file).run(0, bare == Bare::with_types);
         if (layout.pixel_bytes > 0) return layout;
-    } catch (const Error&) {  // the first bytes of a non-DICOM file may look like an element
+    } catch (const Error&) {  // not DICOM after all: its first bytes only looked like an element
     }
     return {};
 }

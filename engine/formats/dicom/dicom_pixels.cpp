@@ -25,8 +25,8 @@ void turn_bytes(std::span<std::byte> pixels, size_t bytes_of_number)
         std::reverse(pixels.begin() + std::ptrdiff_t(i), pixels.begin() + std::ptrdiff_t(i + bytes_of_number));
 }
 
-/// Extracts numbers of `stored.bits` bits, whose highest bit is `stored.high_bit`; drops the other bits, which may hold
-/// overlays.
+/// Extracts the `stored.bits` bits of each number, the highest of which is bit `stored.high_bit`, and drops the other
+/// bits, which may hold overlays.
 template <class Number>
 void take_bits(const DicomStored& stored, std::span<std::byte> pixels)
 {
@@ -86,7 +86,7 @@ std::vector<std::byte> bytes_of_picture(const DicomFile& file, size_t frame)
     return picture;
 }
 
-/// The encoded picture `picture` in GDCM's form, a sequence of fragments.
+/// Returns the encoded `picture` in the form that GDCM expects: a sequence of fragments.
 gdcm::SmartPointer<gdcm::SequenceOfFragments> sequence_of(const DicomFile& file, std::span<const std::byte> picture)
 {
     if (picture.size() > UINT32_MAX)
@@ -98,7 +98,7 @@ gdcm::SmartPointer<gdcm::SequenceOfFragments> sequence_of(const DicomFile& file,
     return sequence;
 }
 
-/// Whether the codec supports the file's transfer syntax and has decoded all pixels of the picture.
+/// Whether the codec supports the file's transfer syntax and succeeds in decoding all pixels of the picture.
 template <class Codec>
 bool decodes(const DicomFile& file, const gdcm::DataElement& picture, std::span<std::byte> pixels)
 {

@@ -18,7 +18,7 @@
 namespace shvr {
 namespace {
 
-/// Positions closer than this count as equal, since files state positions with about six digits.
+/// Positions closer than this count as equal, since files round positions to about six digits.
 constexpr double SAME_PLACE_MM = 1e-3;
 /// Distances may differ by this fraction.
 constexpr double SAME_DISTANCE = 0.01;
@@ -36,10 +36,10 @@ std::string with_digits(double number)
     return sentence(std::setprecision(6), number);
 }
 
-/// Direction cosines may differ by this much: files state few digits, and scanners compute them for each slice.
+/// Tolerance for direction cosines, which files state with few digits and scanners compute again for each slice.
 constexpr double SAME_DIRECTION = 2e-3;
 
-/// Whether slices can be stacked: their sizes and types are equal, and their directions differ only by rounding.
+/// Whether two slices can be stacked: their sizes and types are equal, and their directions differ only by rounding.
 bool are_of_one_kind(const Placed& a, const Placed& b)
 {
     const auto are_near = [](const glm::dvec3& one, const glm::dvec3& other) {
@@ -49,7 +49,7 @@ bool are_of_one_kind(const Placed& a, const Placed& b)
            are_near(a.frame->along_x, b.frame->along_x) && are_near(a.frame->along_y, b.frame->along_y);
 }
 
-/// Returns the slices of the most frequent kind; omits, for example, a scout image next to an axial series.
+/// Returns the largest set of stackable slices. Others, such as a scout image next to an axial series, are left out.
 std::vector<Placed> slices_of_one_kind(const std::vector<Placed>& all, VolumeInfo& info)
 {
     std::vector<std::vector<Placed>> kinds;
@@ -71,7 +71,7 @@ std::vector<Placed> slices_of_one_kind(const std::vector<Placed>& all, VolumeInf
 
 constexpr std::string_view STACK = "stack ";
 
-/// Returns the slices of the only stack, or of the chosen stack: a file of many frames may hold several stacks.
+/// Returns all slices or, if the files hold several stacks of slices, those of the stack that the options choose.
 std::vector<Placed> choose_stack(const std::string& where, const std::vector<DicomFile>& files, OpenOptions& options)
 {
     std::vector<Placed> all;
@@ -104,14 +104,14 @@ std::vector<Placed> choose_stack(const std::string& where, const std::vector<Dic
     return all;
 }
 
-/// Sort key of slices at the same position.
+/// Returns a sort key for slices at the same position.
 auto number_of(const Placed& slice)
 {
     return std::tuple(slice.frame->time_number, slice.file->time_number, slice.file->instance_number, slice.slice.file,
                       slice.slice.frame);
 }
 
-/// Sorts along the normal, or by slice numbers if files do not state positions. Returns whether files state positions.
+/// Sorts slices along their normal, or by number if some lack a position. Returns whether all state positions.
 bool sort_slices(std::vector<Placed>& slices, VolumeInfo& info)
 {
     const bool are_placed = std::all_of(slices.begin(), slices.end(), [](const Placed& slice) {
@@ -130,7 +130,7 @@ bool sort_slices(std::vector<Placed>& slices, VolumeInfo& info)
     return are_placed;
 }
 
-/// Removes duplicate files, which are common in exports.
+/// Removes slices that occur in several copies, which are common in exports.
 void leave_out_copies(std::vector<Placed>& slices, VolumeInfo& info)
 {
     std::set<std::pair<std::string, size_t>> seen;
@@ -167,7 +167,7 @@ size_t usual_count(const std::vector<std::vector<Placed>>& positions)
         ->first;
 }
 
-/// Handles positions with more or fewer slices than usual, where a slice was scanned again or is missing.
+/// Takes the first or last slice at each position, as chosen, if a slice was scanned again or is missing somewhere.
 void choose_repeated(const std::string& where, const OpenOptions& options, VolumeInfo& info,
                      const std::vector<std::vector<Placed>>& positions, std::vector<Placed>& slices)
 {
@@ -189,8 +189,8 @@ void choose_repeated(const std::string& where, const OpenOptions& options, Volum
     slices = std::move(chosen);
 }
 
-/// If there are several slices at each position, keeps those of one time point. Returns false if all slices state the
-/// same position and no times: such slices are not time points; the position stated is the first slice's.
+/// If there are several slices at each position, keeps those of one time point. If all slices state one position and no
+/// times, keeps all of them and returns false: only the first slice's position is then meaningful.
 bool choose_time(const std::string& where, const OpenOptions& options, VolumeInfo& info, std::vector<Placed>& slices)
 {
     const std::vector<std::vector<Placed>> positions = by_position(slices);
@@ -216,7 +216,7 @@ bool choose_time(const std::string& where, const OpenOptions& options, VolumeInf
     return true;
 }
 
-/// Returns the most frequent distance between slices; warns if there are other distances.
+/// Returns the median distance between neighbouring slices; warns if there are other distances.
 double find_distance(const std::vector<Placed>& slices, VolumeInfo& info)
 {
     std::vector<double> distances;
@@ -245,7 +245,7 @@ double find_distance(const std::vector<Placed>& slices, VolumeInfo& info)
     return usual;
 }
 
-/// The step from slice to slice. If the gantry was tilted, the slices' first pixels are not aligned along the normal.
+/// Returns the step between slices. If the gantry was tilted, this step is not parallel to the slices' normal.
 glm::dvec3 step_between(const std::vector<Placed>& slices, double distance, const glm::dvec3& normal)
 {
     const glm::dvec3 way = *slices.back().frame->position - *slices.front().frame->position;
@@ -253,7 +253,7 @@ glm::dvec3 step_between(const std::vector<Placed>& slices, double distance, cons
     return height > 0.0 ? way * (distance / height) : normal * distance;
 }
 
-/// Warns of slices whose pixel spacing differs from that of the first slice; all are drawn with the first one's.
+/// Warns of slices whose pixel spacing differs from the first slice's spacing, with which all slices are drawn.
 void warn_of_spacings(const std::vector<Placed>& slices, VolumeInfo& info)
 {
     constexpr double SAME_SPACING = 1e-4;
@@ -273,7 +273,7 @@ void warn_of_spacings(const std::vector<Placed>& slices, VolumeInfo& info)
                                      usual.y, " x ", usual.x, " mm, and all are drawn with that"));
 }
 
-/// The step between slices without positions of their own; with a negative distance, the step runs against the normal.
+/// Returns the step along the normal between slices that state no positions, from their stated distance or thickness.
 glm::dvec3 stated_step(const std::vector<Placed>& slices, const glm::dvec3& normal, VolumeInfo& info)
 {
     const DicomFrame& frame = *slices[0].frame;

@@ -14,17 +14,17 @@ struct DicomSlice {
     size_t frame = 0;
 };
 
-/// Slices of one size and direction, from first to last, and the volume's description without its type and name.
+/// Slices of one size and direction, from first to last, and the volume's description, which still lacks type and name.
 struct DicomVolume {
     VolumeInfo info{};
     std::vector<DicomSlice> slices{};
 };
 
-/// Returns the files of the only series, or of the series that the options choose. `where`: for messages.
+/// Returns the files of the only series, or of the series that the options choose. `where` names the input in messages.
 std::vector<DicomFile> choose_series(const std::string& where, std::vector<DicomFile> files,
                                      const OpenOptions& options);
 
-/// Makes a volume of `files`, which must be at least one file, all of one series.
+/// Arranges the slices of `files` as a volume. `files` must be of one series, and at least one.
 DicomVolume arrange_slices(const std::string& where, const std::vector<DicomFile>& files, const OpenOptions& options);
 
 /// For messages: "1 slice", "2 slices".

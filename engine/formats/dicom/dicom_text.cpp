@@ -13,7 +13,7 @@
 namespace shvr {
 namespace {
 
-/// The defined terms of Specific Character Set, with iconv's names. A term may also have "2022 " after "ISO ".
+/// The defined terms of Specific Character Set, with iconv's names. Files may also spell them as "ISO 2022 IR 100".
 constexpr std::pair<std::string_view, const char*> ENCODINGS[] = {
     {"ISO_IR 100", "ISO-8859-1"},  {"ISO_IR 101", "ISO-8859-2"},  {"ISO_IR 109", "ISO-8859-3"},
     {"ISO_IR 110", "ISO-8859-4"},  {"ISO_IR 144", "ISO-8859-5"},  {"ISO_IR 127", "ISO-8859-6"},
@@ -43,7 +43,7 @@ bool is_utf8(std::string_view bytes)
 
 const char* encoding_of(std::string_view character_set)
 {
-    // If several character sets are named, characters beyond ASCII use the last one.
+    // If a file names several character sets, the last one is used for all characters beyond ASCII.
     std::string term(trimmed(character_set.substr(character_set.rfind('\\') + 1)));
     term = std::string(trimmed(std::string_view(term).substr(0, term.find('\0'))));
     if (term.starts_with("ISO 2022 IR")) term = "ISO_IR" + term.substr(11);

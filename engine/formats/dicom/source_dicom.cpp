@@ -1,5 +1,5 @@
-// DICOM: a folder of slices, one of its files, or a file with many frames. Slices are decoded on demand; a few are
-// cached.
+// Opens DICOM: a folder of slices, one slice of a series, or a file with many frames. Slices are decoded on demand, and
+// a few decoded slices are cached.
 
 #include <algorithm>
 #include <mutex>
@@ -102,8 +102,8 @@ std::vector<fs::path> dicom_files_in(const fs::path& folder)
     return paths;
 }
 
-/// The DICOM files in the subfolders of `folder`: studies come as nested folders of patients, studies and series. Skips
-/// folders that cannot be read, and links to folders.
+/// Returns the DICOM files in the subfolders of `folder`, since studies come as nested folders of patients, studies and
+/// series. Skips unreadable folders, and links to folders.
 std::vector<fs::path> dicom_files_below(const fs::path& folder)
 {
     constexpr int MAX_DEPTH = 8;
@@ -120,7 +120,7 @@ std::vector<fs::path> dicom_files_below(const fs::path& folder)
     return paths;
 }
 
-/// Reads all files. Files that cannot be part of a volume (a report, a colour picture) are left out, with a warning.
+/// Reads all files. Files that cannot be part of a volume, such as reports or colour pictures, go into `left_out`.
 std::vector<DicomFile> read_all(const std::vector<fs::path>& paths, std::vector<std::string>& left_out)
 {
     std::vector<DicomFile> files;
@@ -134,7 +134,7 @@ std::vector<DicomFile> read_all(const std::vector<fs::path>& paths, std::vector<
     return files;
 }
 
-/// The type that holds the intensities of every slice.
+/// Returns the voxel type that holds the intensities of all slices.
 VoxelType type_of(const std::vector<DicomFile>& files, const std::vector<DicomSlice>& slices)
 {
     const Rescale& first = files[slices[0].file].frames[slices[0].frame].rescale;
@@ -149,13 +149,13 @@ VoxelType type_of(const std::vector<DicomFile>& files, const std::vector<DicomSl
     return rescaled_type(stored, first);
 }
 
-/// The files of the volume, and how they are arranged.
+/// The files of the volume, and the arrangement of their slices.
 struct Opened {
     std::vector<DicomFile> files{};
     DicomVolume volume{};
 };
 
-/// Opens the file's whole series. If a file of many frames forms no volume with its series, opens the file alone.
+/// Opens the series of the file. If the series forms no volume and the file has many frames, opens only this file.
 Opened open_file(const fs::path& path, DicomFile&& file, const OpenOptions& options)
 {
     const std::string where = path.string();

@@ -1,4 +1,4 @@
-// Writes a volume as a TIFF through libtiff, which seeks back in the file to link pages.
+// Writes a volume as a TIFF through libtiff, which seeks back in the file to link each page to the next.
 
 #include <tiffio.h>
 
@@ -16,8 +16,8 @@
 namespace shvr {
 namespace {
 
-/// The file being written, as seen by libtiff's client functions.
-/// These functions are called from C, so no exception may escape.
+/// The output file for libtiff's client functions. They are called from C, so no exception may leave
+/// them.
 struct ClientFile {
     AtomicWriter& writer;
     int64_t at = 0, size = 0;
@@ -121,8 +121,8 @@ int sample_format(VoxelType type)
     return is_signed ? SAMPLEFORMAT_INT : SAMPLEFORMAT_UINT;
 }
 
-/// Description lines for ImageJ, which ignores lines with unknown keys. ImageJ reads the spacing in x and y from the
-/// pages' resolution, a fraction of 32-bit integers.
+/// Returns the description lines for ImageJ, which ignores unknown keys. The lines hold no spacing in x and y for
+/// ImageJ, because it reads these from the pages' resolution fields, fractions of 32-bit integers.
 std::string description_of(const VolumeInfo& info)
 {
     const std::string unit = plain_unit(info.unit);
@@ -144,7 +144,7 @@ void export_tiff(const std::filesystem::path& path, const VolumeSource& source)
     const Size3& size = info.size;
     const auto voxel_bytes = int64_t(bytes_of(info.type));
     AtomicWriter file(path);
-    // Decides first whether 32-bit offsets suffice, since compression must not start before that is known.
+    // The choice between TIFF and BigTIFF must be made before the compressed size is known, so it uses the raw size.
     TiffWriter writer(path, file, size.x * size.y * voxel_bytes > (int64_t{1} << 31) / size.z);
     const int64_t step = export_rows(info);
     const std::string description = description_of(info);

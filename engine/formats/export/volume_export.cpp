@@ -14,7 +14,7 @@ namespace shvr {
 namespace {
 
 constexpr int64_t STRIP_BYTES = int64_t{1} << 18;
-/// Maximum compression ratio of deflate, which TIFFs are compressed with: 258 bytes in 2 bits.
+/// Maximum compression ratio of deflate, the compression of exported TIFFs: 258 bytes in 2 bits.
 constexpr int64_t MAX_DEFLATION = 1032;
 constexpr const char* LESS_SPACE = "free some of it, or choose .zarr, which holds what is painted alone";
 
@@ -29,7 +29,7 @@ std::string in_brackets(const glm::dvec3& vector)
     return sentence("(", digits_of(vector.x), ",", digits_of(vector.y), ",", digits_of(vector.z), ")");
 }
 
-/// Sizes and orientation of the axes. In NRRD, the space must precede the fields that refer to it.
+/// Returns the fields for sizes and orientation. In NRRD, "space" must precede the fields that refer to it.
 std::string nrrd_axes(const VolumeInfo& info)
 {
     // Quotes would end the unit's name.
@@ -48,7 +48,7 @@ std::string nrrd_axes(const VolumeInfo& info)
                     "\nspace origin: ", in_brackets(info.origin));
 }
 
-/// Whether a field of the replaced file stays valid: it describes neither voxels nor axes, or only unchanged axes.
+/// Whether a field of the replaced file stays valid: it is about neither voxels nor axes, or the axes are unchanged.
 bool is_kept(const std::string& field, bool has_same_axes, bool has_space)
 {
     constexpr std::string_view ANY[] = {"content", "number", "sample units", "sampleunits"};

@@ -15,15 +15,15 @@
 
 namespace shvr {
 
-/// The key that distinguishes an exported mask or density offsets from a scan: "shvr_content:=mask" in NRRD, and
-/// "shvr_content=mask" in the description of a TIFF.
+/// The key that distinguishes an exported mask or exported density offsets from a scan: "shvr_content:=mask" in NRRD,
+/// and "shvr_content=mask" in the description of a TIFF.
 inline constexpr const char* NRRD_CONTENT_KEY = "shvr_content";
 
 bool is_volume_export(const std::filesystem::path& path);
 
-/// Replaces an existing file atomically. Fails for any other extension. An NRRD file keeps the comments, key/value
-/// pairs and fields of `kept`, except those that describe voxels and axes; without it, those of the NRRD file that it
-/// replaces.
+/// Exports to `path` in the format of its extension, and atomically replaces an existing file. An NRRD file keeps the
+/// comments, key/value pairs and fields of `kept` (if null: of the file it replaces), except fields about voxels and
+/// axes. Fails for an unknown extension.
 void export_volume(const std::filesystem::path& path, const VolumeSource& source, const Progress& progress = {},
                    const std::optional<NrrdHead>& kept = {});
 
@@ -31,7 +31,7 @@ void export_volume(const std::filesystem::path& path, const VolumeSource& source
 void export_nrrd(const std::filesystem::path& path, const VolumeSource& source, const NrrdHead& kept);
 void export_tiff(const std::filesystem::path& path, const VolumeSource& source);
 
-/// The number of rows of a slice that an export reads at a time: as many as 256 KiB hold, at least one.
+/// Returns the number of rows that an export reads at a time: as many rows of a slice as 256 KiB hold, at least one.
 int64_t export_rows(const VolumeInfo& info);
 
 }  // namespace shvr

@@ -32,7 +32,7 @@ private:
     bool big_endian_;
 };
 
-/// The offsets of a version's fields. Real numbers are of type T, lengths of type Side, codes of type Code.
+/// Field offsets of one NIfTI version. The versions also differ in field types, the parameters of `parse`.
 struct Places {
     size_t dim, datatype, pixdim, voxels_at, slope, intercept, units, qform_code, sform_code, quaternion, qform_origin,
         sform;
@@ -64,7 +64,7 @@ NiftiHeader parse(const Fields& fields, const Places& places)
     return header;
 }
 
-/// Returns whether `head` is big-endian; it must begin with the number `bytes` (348 or 540) in one of the byte orders.
+/// Returns whether `head` is big-endian; null unless it begins with the number `bytes` (348 or 540) in some byte order.
 std::optional<bool> byte_order(std::string_view head, int32_t bytes)
 {
     if (head.size() < size_t(bytes)) return {};
@@ -80,7 +80,7 @@ std::optional<NiftiAxes> checked(const NiftiAxes& axes)
         const double length = glm::length(axes.steps[axis]);
         if (!std::isfinite(length) || !(length > 0.0) || !std::isfinite(axes.origin[axis])) return {};
     }
-    // Axes in one plane do not span a volume.
+    // Refuses axes that lie in one plane, which span no volume.
     const glm::dmat3 units(glm::normalize(axes.steps[0]), glm::normalize(axes.steps[1]), glm::normalize(axes.steps[2]));
     if (std::abs(glm::determinant(units)) < 1e-6) return {};
     return axes;
@@ -123,7 +123,7 @@ std::optional<NiftiAxes> qform_axes(const NiftiHeader& header)
     const double c = header.quaternion.y;
     const double d = header.quaternion.z;
     const double rest = 1.0 - (b * b + c * c + d * d);
-    // Stored numbers are rounded, so b, c and d of a half turn may be slightly longer than 1.
+    // Stored numbers are rounded, so for a rotation by 180 degrees the vector (b, c, d) may be slightly longer than 1.
     if (!(rest > -1e-3)) return {};
     const double a = std::sqrt(std::max(0.0, rest));
     const double scale = 1.0 / std::sqrt(a * a + b * b + c * c + d * d);

@@ -1,5 +1,5 @@
 #pragma once
-// The header of NIfTI-1 and NIfTI-2, which is one struct of 348 or 540 bytes in either byte order
+// Parses the headers of NIfTI-1 and NIfTI-2, one struct of 348 or 540 bytes in either byte order
 // (https://nifti.nimh.nih.gov/pub/dist/src/niftilib/nifti1.h, nifti2.h). For source_nifti.cpp. Any thread.
 
 #include <array>
@@ -29,17 +29,17 @@ struct NiftiHeader {
     int sform_code = 0;
     glm::dvec3 quaternion{0.0};  ///< b, c, d
     glm::dvec3 qform_origin{0.0};
-    glm::dmat3 sform_steps{0.0};  ///< columns: from voxel to voxel along x, y, z
+    glm::dmat3 sform_steps{0.0};  ///< columns: steps between voxels along x, y and z
     glm::dvec3 sform_origin{0.0};
 };
 
-/// Null if `head`, the first bytes of a file, is not a NIfTI header.
+/// Returns null if `head`, the first bytes of a file, is not a NIfTI header.
 std::optional<NiftiHeader> parse_nifti_header(std::string_view head);
 
 /// Whether `head` is a header of Analyze 7.5, the predecessor of NIfTI-1.
 bool is_analyze_header(std::string_view head);
 
-/// The steps and the origin given by the header's qform, if its numbers are valid.
+/// The steps between voxels and the origin, as the header's qform states them.
 struct NiftiAxes {
     glm::dmat3 steps{1.0};
     glm::dvec3 origin{0.0};

@@ -13,7 +13,7 @@ namespace {
 constexpr const char* DIRECTIONS = "space directions";
 constexpr const char* DIRECTIONS_EXPECTED = "three vectors of three numbers, (a,b,c) (d,e,f) (g,h,i)";
 
-/// Splits values such as "mm" "mm" "mm", with or without quotes.
+/// Splits values such as "mm" "mm" "mm" at spaces, and removes quotes.
 std::vector<std::string> texts_of(std::string_view value)
 {
     std::vector<std::string> texts;
@@ -29,7 +29,7 @@ std::vector<std::string> texts_of(std::string_view value)
     return texts;
 }
 
-/// Parses and removes "(a,b,c)" at the start of `rest`.
+/// Parses a vector "(a,b,c)" at the start of `rest` and removes it from `rest`.
 std::optional<glm::dvec3> take_vector(std::string_view& rest)
 {
     rest = trimmed(rest);
@@ -51,7 +51,7 @@ std::optional<glm::dvec3> take_vector(std::string_view& rest)
     return vector;
 }
 
-/// One entry per axis of the file; null for an axis that is not spatial, whose direction is "none" or NaNs.
+/// Returns one entry per axis of the file; null for a non-spatial axis, whose direction is "none" or a vector of NaNs.
 std::vector<std::optional<glm::dvec3>> axis_directions(const HeaderFields& fields, size_t dimension)
 {
     std::string_view rest = fields.required(DIRECTIONS, DIRECTIONS_EXPECTED);
@@ -72,7 +72,7 @@ std::vector<std::optional<glm::dvec3>> axis_directions(const HeaderFields& field
     return directions;
 }
 
-/// Whether the first of four axes is the non-spatial axis; otherwise, the last axis is.
+/// Returns whether the non-spatial one of four axes is the first (true) or the last (false). Fails if it is unclear.
 bool first_is_not_space(const HeaderFields& fields)
 {
     constexpr const char* EXPECTED = "3, or 4 with kinds or space directions that say which axis is none of space";
@@ -92,7 +92,7 @@ bool first_is_not_space(const HeaderFields& fields)
     fields.refuse("dimension", EXPECTED);
 }
 
-/// Whether the first of three axes holds colours or components, and the other two are spatial.
+/// Whether the first of three axes holds colours or components and the other two are spatial, as in a 2-D picture.
 bool is_picture(std::string_view kinds)
 {
     const std::vector<std::string_view> words = words_of(kinds);
@@ -124,7 +124,7 @@ std::optional<std::string> unit_of(const HeaderFields& fields, const NrrdAxes& a
     return texts[0];
 }
 
-/// Columns are the steps from voxel to voxel along x, y and z.
+/// Returns the steps between voxels; column i is the step along axis i.
 glm::dmat3 space_directions(const HeaderFields& fields, const NrrdAxes& axes)
 {
     const auto directions = axis_directions(fields, axes.dimension);
@@ -137,7 +137,7 @@ glm::dmat3 space_directions(const HeaderFields& fields, const NrrdAxes& axes)
             fields.refuse(DIRECTIONS, "vectors of finite length greater than 0");
         }
     }
-    // A picture is as thick as a pixel is wide.
+    // A 2-D picture becomes a slice that is as thick as a pixel is wide.
     if (axes.is_picture) steps[2] = glm::cross(steps[0], steps[1]) / glm::length(steps[1]);
     return steps;
 }
@@ -153,7 +153,7 @@ glm::dvec3 space_origin(const HeaderFields& fields)
     return is_known ? *origin : glm::dvec3(0.0);
 }
 
-/// A known coordinate frame, and whether the file's x axis is opposite to the frame's x axis.
+/// A known coordinate frame; `is_left_handed`: the file's x axis is opposite to that of `frame`.
 struct Space {
     std::string frame;
     bool is_left_handed = false;
@@ -178,7 +178,7 @@ Space space_of(const HeaderFields& fields, VolumeInfo& info)
     return {};
 }
 
-/// Whether the samples of an axis lie at the ends of its cells; otherwise they lie in the middles.
+/// Whether the samples of an axis lie at the borders of its cells ("node") rather than in the cells' centres ("cell").
 bool is_node_centered(const HeaderFields& fields, const NrrdAxes& axes, size_t axis, bool& is_stated)
 {
     const char* const name = fields.has("centers") ? "centers" : "centerings";
@@ -220,7 +220,7 @@ std::optional<std::vector<double>> steps_of_ends(const HeaderFields& fields, con
     return steps;
 }
 
-/// In files without a space, a negative spacing means that the axis runs backwards.
+/// Returns the steps from "spacings" or "axis mins" and "axis maxs". A negative spacing means a reversed axis.
 std::optional<glm::dmat3> steps_of_spacings(const HeaderFields& fields, const NrrdAxes& axes, VolumeInfo& info)
 {
     const char* const NAME = fields.has("spacings") ? "spacings" : "axis maxs";
@@ -250,7 +250,7 @@ std::optional<glm::dmat3> steps_of_spacings(const HeaderFields& fields, const Nr
         if (std::isnan(steps[axis][axis]) && info.size[axis] == 1 && !fields.has("spacings"))
             steps[axis][axis] = std::abs(steps[axis == 0 ? 1 : 0][axis == 0 ? 1 : 0]);
     for (int axis = 0; axis < 3; ++axis) {
-        // The square of anything below 1e-162 underflows to 0.
+        // Also refuses lengths below 1e-162, whose square underflows to 0.
         if (!std::isfinite(glm::length(steps[axis])) || glm::length(steps[axis]) == 0.0) {
             fields.refuse(NAME, sentence(axes.dimension, " finite numbers other than 0"));
         }

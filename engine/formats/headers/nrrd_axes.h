@@ -8,8 +8,8 @@
 
 namespace shvr {
 
-/// Three spatial axes, and at most one other axis: before them (values of a voxel) or after them (time points). A
-/// picture has an axis of channels, then two spatial axes, and one slice.
+/// The axes of a file: three spatial axes, and at most one other, either first (several values per voxel) or last (time
+/// points). A picture has an axis of channels, two spatial axes, and a single slice.
 struct NrrdAxes {
     size_t dimension = 3;
     size_t first = 0;  ///< index of the first spatial axis

@@ -1,6 +1,6 @@
-// MetaImage (https://itk.org/Wiki/MetaIO/Documentation): a header of "key = value" lines. The last one,
-// ElementDataFile, states where the voxels are: in one or many other files (MHD), or right after the header (LOCAL,
-// MHA), raw or compressed with zlib.
+// Opens MetaImage (https://itk.org/Wiki/MetaIO/Documentation): a header of "key = value" lines. The last key,
+// ElementDataFile, states where the voxels are: in one or many other files (MHD), or after the header (LOCAL, MHA).
+// They are raw or compressed with zlib.
 
 #include <cmath>
 #include <utility>
@@ -19,7 +19,7 @@ constexpr const char* DATA_FILE = "ElementDataFile";
 
 struct MhdHeader {
     HeaderFields fields;
-    int64_t length = 0;            ///< bytes up to and including the line of ElementDataFile
+    int64_t length = 0;            ///< bytes up to and including the line ElementDataFile
     std::string_view file_list{};  ///< the lines after ElementDataFile
 };
 
@@ -35,7 +35,7 @@ MhdHeader read_mhd_header(const std::filesystem::path& path, const std::string& 
             fail(path.string(), ": line ", line_number, " is ", in_quotes(line), "; expected \"key = value\"");
         }
         header.fields.add(line.substr(0, separator), line.substr(separator + 1));
-        // Headers of other kinds of objects repeat fields; refuse such headers by their object type first.
+        // Checks the object type before other errors: headers of objects other than images may repeat fields.
         const std::string* type = header.fields.find("ObjectType");
         if (type != nullptr && lower_case(*type) != "image") header.fields.refuse("ObjectType", "Image");
     }
@@ -44,7 +44,7 @@ MhdHeader read_mhd_header(const std::filesystem::path& path, const std::string& 
     return header;
 }
 
-/// The first of `names` that the header contains; if it contains none of them, the first of `names`.
+/// Returns the first of `names` that the header contains; if it contains none of them, the first of `names`.
 const char* first_of(const HeaderFields& fields, std::initializer_list<const char*> names)
 {
     for (const char* name : names) {
@@ -60,9 +60,9 @@ void refuse_what_is_not_supported(const HeaderFields& fields)
     if (!fields.flag("BinaryData", true)) fields.refuse("BinaryData", "True: voxels as text are not supported");
 }
 
-/// MetaImage names no frame. If the file states the anatomical orientation of the axes, the frame is that of ITK, which
-/// writes most of these files: LPS. The orientation letters are ignored, since programs disagree on whether they denote
-/// where axes come from or where they lead. The columns are the directions of x, y and z.
+/// Sets the directions and the origin. MetaImage names no frame: if the file states an anatomical orientation, the
+/// frame is assumed to be LPS, as in ITK, which writes most of these files. The orientation's letters are ignored,
+/// since some programs name the side where an axis begins, and others the side where it ends.
 void read_orientation(const HeaderFields& fields, VolumeInfo& info)
 {
     const char* const matrix = first_of(fields, {"TransformMatrix", "Rotation", "Orientation"});

@@ -63,7 +63,7 @@ std::string head_of(const fs::path& path, bool& is_compressed)
     return is_compressed ? inflated_head(path, NiftiHeader::BYTES_OF_2) : head;
 }
 
-/// Example: scan.hdr.gz, ".hdr", ".img" -> scan.img.gz. Empty if the name ends in neither `from` nor `from` + ".gz".
+/// Replaces an ending: scan.hdr.gz, ".hdr", ".img" -> scan.img.gz. Empty unless the name ends in `from` or `from`.gz.
 fs::path with_ending(const fs::path& path, std::string_view from, const std::string& to)
 {
     std::string name = path.filename().string();
@@ -79,7 +79,7 @@ fs::path with_ending(const fs::path& path, std::string_view from, const std::str
     return fs::exists(other, ignored) ? other : same;
 }
 
-/// The content of a file: one volume of size `size` for each time point and each component.
+/// The content of a file: a volume of size `size` for each time point and each component.
 struct Shape {
     Size3 size{1};
     int64_t frames = 1;
@@ -102,7 +102,7 @@ Shape shape_of(const std::string& file, const NiftiHeader& header)
     return {{side(1), side(2), side(3)}, side(4), side(5)};
 }
 
-/// Chooses one of several volumes, which follow one another in the file; time points vary fastest.
+/// Chooses one of the file's volumes, which are stored one after the other, with time points varying fastest.
 void choose_volume(const std::string& file, const OpenOptions& options, const Shape& shape, const Datatype& datatype,
                    VolumeInfo& info, RawVoxels& voxels)
 {
@@ -152,7 +152,7 @@ std::optional<std::string> unit_of(const NiftiHeader& header)
     }
 }
 
-/// The spacing if there are no valid axes: the absolute values of pixdim, with 1 in place of invalid ones.
+/// Returns the spacing for files without valid axes: the absolute values of pixdim, with 1 in place of invalid ones.
 std::optional<glm::dvec3> spacing_of_pixdim(const NiftiHeader& header, VolumeInfo& info)
 {
     glm::dvec3 spacing(1.0);

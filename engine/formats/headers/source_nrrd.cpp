@@ -24,7 +24,7 @@ struct NrrdHeader {
     bool states_offsets = false;   ///< density offsets of this program
 };
 
-/// Notes key/value pairs that say that the file is no scan.
+/// Records key/value pairs that mark the file as a mask or as density offsets rather than a scan.
 void note_content(std::string_view pair, NrrdHeader& header)
 {
     header.states_groups |= pair == "shvr_content:=mask" || pair.starts_with("Segment0_");
@@ -65,7 +65,7 @@ NrrdHeader read_nrrd_header(const std::filesystem::path& path, const std::string
     return header;
 }
 
-/// Where the bytes begin after `lines` line ends, counted from `from`.
+/// Returns the offset after the next `lines` line ends, searched from offset `from`.
 int64_t skip_lines(const HeaderFields& fields, const std::filesystem::path& file, int64_t from, int64_t lines)
 {
     if (lines == 0) return from;
@@ -101,13 +101,13 @@ bool is_big_endian(const HeaderFields& fields, VoxelType type)
     return endian == "big";
 }
 
-/// Finds the voxels in one file: skips the lines and bytes that the header states for all files.
+/// Locates the voxels in one file by skipping the lines and bytes that the header states for every file.
 RawVoxels::Part place_in(const HeaderFields& fields, const std::filesystem::path& file, int64_t from, bool deflated)
 {
     constexpr int64_t MOST = int64_t{1} << 62;
     const char* const byte_skip = fields.has("byteskip") ? "byteskip" : "byte skip";
     const char* const line_skip = fields.has("lineskip") ? "lineskip" : "line skip";
-    // A negative skip counts from the end, so compressed bytes allow none. Lines are skipped before decompression.
+    // -1: at the end of the file, which is unknown for compressed data. Lines are skipped before decompression.
     const int64_t bytes = fields.whole(byte_skip, 0, deflated ? 0 : -1, MOST);
     if (bytes == RawVoxels::AT_END) return {file, RawVoxels::AT_END};
     const int64_t begin = skip_lines(fields, file, from, fields.whole(line_skip, 0, 0, MOST));
@@ -143,8 +143,8 @@ RawVoxels place_voxels(const NrrdHeader& header, const VolumeInfo& info)
     return voxels;
 }
 
-/// A writer that quantized the values may state their former range (teem's "unu quantize"). The stored numbers may be
-/// used as they are all the same, so the range is not applied.
+/// Warns if the file states a former range of values, as writers do that quantize values (teem's "unu quantize"). The
+/// stored numbers may be meant as they are, so the range is not applied.
 void warn_of_old_range(const HeaderFields& fields, VolumeInfo& info)
 {
     for (const auto& [lower, upper] : {std::pair{"old min", "old max"}, std::pair{"oldmin", "oldmax"}}) {

@@ -1,5 +1,5 @@
-// Raw voxels in a layout given by the user: in one file, or one slice per file, as scanners and toolkits number them
-// (head.1, head.2, ... or slice000.raw, slice001.raw, ...).
+// Opens raw voxels in a layout given by the user: in one file, or one slice per file, numbered as scanners and toolkits
+// do (head.1, head.2, ... or slice000.raw, slice001.raw, ...).
 
 #include <algorithm>
 #include <utility>
@@ -40,7 +40,7 @@ bool comes_before(const std::string& a, const std::string& b)
     return a.size() - i != b.size() - j ? a.size() - i < b.size() - j : a < b;
 }
 
-/// Bytes of a file with one slice, including `layout.offset_bytes`; null if they exceed 63 bits.
+/// Returns the size of a file with one slice, including `layout.offset_bytes`; null if it exceeds 63 bits.
 std::optional<int64_t> slice_file_bytes(const RawLayout& layout)
 {
     int64_t bytes = 0;
@@ -58,7 +58,7 @@ int64_t file_bytes(const fs::path& path)
     return error ? 0 : int64_t(bytes);
 }
 
-/// The files of a folder that hold a slice, in order.
+/// Returns the files of exactly `bytes` bytes in a folder, sorted by name. Fails unless there is one for each slice.
 std::vector<fs::path> slices_in(const fs::path& folder, const RawLayout& layout, int64_t bytes)
 {
     std::vector<std::string> names;
@@ -79,8 +79,8 @@ std::vector<fs::path> slices_in(const fs::path& folder, const RawLayout& layout,
     return slices;
 }
 
-/// The files of `count` slices, one slice each: counts on from the last number in the name of `first`, which holds
-/// `bytes` bytes. Empty if that name contains no digits.
+/// Returns the files of `count` slices, one slice each, by counting on from the last number in the name of `first`.
+/// `bytes` is the size of each file. Empty if that name contains no digits.
 std::vector<fs::path> slices_from(const fs::path& first, int64_t count, int64_t bytes)
 {
     const std::string name = first.filename().string();

@@ -1,4 +1,4 @@
-// Side-cars written by scanners and viewers: "Resolution: x y z" text (NSI, Inviwo) and XML (Dragonfly).
+// Reads side-cars of scanners and viewers: "Resolution: x y z" text (NSI, Inviwo) and XML (Dragonfly).
 
 #include <cmath>
 #include <utility>
@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The value of `name="..."` in the tag <tag ...>.
+/// Returns the value of `name="..."` in the tag <tag ...>.
 std::optional<std::string> attribute(std::string_view xml, const std::string& tag, std::string_view name)
 {
     for (size_t at = xml.find("<" + tag); at != std::string_view::npos; at = xml.find("<" + tag, at + 1)) {
@@ -119,7 +119,7 @@ void warn_of_what_is_left_out(const HeaderFields& fields, VolumeInfo& info)
     }
 }
 
-/// Columns are the directions of x, y and z; the frame has no name.
+/// Sets the directions of x, y and z, the columns of a matrix. The file format names no coordinate frame.
 void read_orientation(const HeaderFields& fields, VolumeInfo& info)
 {
     if (!fields.has("Orientation")) return;

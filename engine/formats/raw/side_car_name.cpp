@@ -1,4 +1,4 @@
-// Raw voxels whose file name states size and type. A warning says that size and type are a guess.
+// Opens raw voxels whose file name states size and type, with a warning that both are a guess.
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The length of "512x512x300" at the start of `text`, or 0.
+/// Parses a size such as "512x512x300" at the start of `text`; returns its length in characters, or 0.
 size_t size_in_name(std::string_view text, Size3& size)
 {
     size_t at = 0;
@@ -25,7 +25,7 @@ size_t size_in_name(std::string_view text, Size3& size)
     return at;
 }
 
-/// Reads words like "16bit", "int16" or "uint16le"; sets the recognised properties.
+/// Reads words like "16bit", "int16" or "uint16le", and sets the type and the byte order that they name.
 void type_in_name(std::string word, std::optional<VoxelType>& type, std::optional<bool>& big_endian)
 {
     if (word == "little" || word == "big") big_endian = word == "big";
@@ -37,13 +37,13 @@ void type_in_name(std::string word, std::optional<VoxelType>& type, std::optiona
     if (word == "16bit") type = VoxelType::uint16;
     if (word == "32bit") type = VoxelType::float32;
     if (word == "64bit") type = VoxelType::float64;
-    // Plain words of everyday language ("short_root.raw") are not types.
+    // Everyday words that are also type names ("short_root.raw") are not taken as types.
     if (!word.empty() && (is_digit(word.back()) || word == "uchar" || word == "ushort" || word == "uint")) {
         if (const auto known = voxel_type_of(word)) type = known;
     }
 }
 
-/// The type with which the voxels would fill the file exactly.
+/// Returns the voxel type with which the voxels would exactly fill the file. Fails if there is none.
 VoxelType type_by_length(const fs::path& path, const VolumeInfo& info)
 {
     const int64_t count = voxel_count(info);

@@ -1,5 +1,5 @@
-// Headers that CT scanners write next to raw voxels: VGStudio's .vgi, Nikon's .xtekct, and .vol.info of PyHST (ESRF).
-// The layouts are derived from files of these programs; none of them is documented publicly.
+// Reads headers that CT scanners write next to raw voxels: VGStudio's .vgi, Nikon's .xtekct, and .vol.info of PyHST
+// (ESRF). None of these formats is documented publicly; the layouts are derived from sample files.
 
 #include <array>
 #include <utility>
@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view FILE_SECTION = "[file1]", NEXT_FILE_SECTION = "[file2]";
 
-/// Adds lines "name = value" to `fields`: if `is_inside`, only those inside the section that describes the voxel file,
-/// otherwise only those outside of it. If a field repeats, the first one counts.
+/// Adds lines "name = value" to `fields`: only those inside the section that describes the voxel file if `is_inside` is
+/// true, only those outside of it otherwise. If a field repeats, the first one counts.
 void add_lines(std::string_view text, bool is_inside, HeaderFields& fields)
 {
     bool is_of_file = false;
@@ -54,7 +54,7 @@ Size3 size_of(const HeaderFields& fields, const std::array<const char*, 3>& name
     return size;
 }
 
-/// The type that follows from the file's size and the number of voxels, if the header states no type.
+/// Returns the type that follows from the file's size and the number of voxels, for headers that state no type.
 VoxelType type_by_size(const HeaderFields& fields, const fs::path& voxels, VolumeInfo& info)
 {
     std::error_code error;
@@ -169,7 +169,7 @@ SideCar read_vgi(const HeaderFields& fields, fs::path raw)
     return made;
 }
 
-/// Whether the header names an existing file other than `raw`. A missing file does not count: its name may be outdated.
+/// Whether the header names an existing file other than `raw`. A missing file does not count, as files may be renamed.
 bool is_of_another(const HeaderFields& fields, const fs::path& raw)
 {
     const std::string* const name = fields.find("Name");

@@ -12,7 +12,7 @@
 namespace shvr {
 namespace {
 
-/// Decoded bytes to cache per deflated part. Each part is a slice, and several may be open at once.
+/// Bytes of decoded data to cache per deflated part. Each part is one slice, and several may be open at once.
 constexpr int64_t KEPT_OF_PART = int64_t{2} << 20;
 
 struct Layout {
@@ -80,7 +80,7 @@ private:
 
 // ---- Opening: checks sizes against files ----------------------------------------------------------------------------
 
-/// The number of bytes of all channels of all voxels; fails if it exceeds 63 bits.
+/// Returns the number of bytes of all channels of all voxels. Fails if the number exceeds 63 bits.
 int64_t bytes_of_voxels(const VolumeInfo& info, const RawVoxels& voxels, int64_t offset)
 {
     SHVR_CHECK(offset >= 0 && voxels.channels >= 1 && voxels.channel >= 0 && voxels.channel < voxels.channels);
@@ -101,7 +101,7 @@ std::string size_text(const VolumeInfo& info, const RawVoxels& voxels)
                     voxels.channels > 1 ? sentence(voxels.channels, " times ") : std::string(), name_of(info.type));
 }
 
-/// Checks that `file` holds `needed` bytes at `offset`. Returns the offset at which they begin.
+/// Checks that `file` holds `needed` bytes at `offset`, then `after` more. Resolves and returns `offset` (AT_END).
 int64_t place_in_file(const InputFile& file, int64_t offset, int64_t needed, int64_t after, const std::string& of_what)
 {
     const int64_t all = (offset == RawVoxels::AT_END ? 0 : offset) + needed + after;
@@ -153,7 +153,7 @@ std::unique_ptr<VoxelBytes> open_parts(const VolumeInfo& info, const RawVoxels& 
     const int64_t share = needed / count;
     const std::string of_what =
         sentence(count == 1 ? "" : sentence("one of ", count, " equal parts of "), size_text(info, voxels));
-    // Checks each file now, so that a missing slice is found before an hour of work, not after.
+    // Checks every file on opening, so that a missing slice is not found only after an hour of work.
     for (const RawVoxels::Part& part : voxels.parts) static_cast<void>(open_part(voxels, part, share, of_what));
     return bytes_of_parts(voxels.parts.size(), share, [voxels, share, of_what](size_t i) {
         return open_part(voxels, voxels.parts[i], share, of_what);

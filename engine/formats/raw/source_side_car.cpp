@@ -37,7 +37,7 @@ fs::path with_suffix(fs::path path, const char* suffix)
     return path += suffix;
 }
 
-/// Null if the document is not a side-car (but, for example, another program's settings).
+/// Returns null if the document is no side-car, but, for example, another program's settings.
 std::optional<JsonDocument> parse_json(const fs::path& path)
 {
     JsonDocument document = read_json(path, MAX_HEADER_BYTES, {.depth = 64, .expected = "size and type"});
@@ -51,7 +51,7 @@ bool is_same_file(const fs::path& a, const fs::path& b)
     return fs::equivalent(a, b, error) && !error;
 }
 
-/// A header next to raw voxels counts only if it refers to them.
+/// Opens `raw` by the header next to it. Returns null if the header does not refer to `raw`.
 Source open_by_header(const fs::path& header, const char* data_field, const fs::path& raw,
                       Source (*open)(const fs::path&, const OpenOptions&))
 {

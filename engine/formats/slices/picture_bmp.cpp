@@ -1,4 +1,4 @@
-// BMP without compression, as scanners write it: 8 bits with a palette, 24 or 32 bits of colour.
+// Reads BMP without compression, as scanners write it: 8 bits with a palette, 24 or 32 bits of colour.
 
 #include <array>
 #include <cstring>

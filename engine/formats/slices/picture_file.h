@@ -1,7 +1,7 @@
 #pragma once
-// PNG, BMP and JPEG files as slices: their size, samples and rows. libpng and libjpeg decode; BMP needs no library.
-// Sizes are checked against the file before memory is allocated; rows are decoded one at a time. Any thread may call
-// these.
+// Reads PNG, BMP and JPEG files as slices: size, samples and rows. libpng and libjpeg decode; BMP needs no library.
+// Sizes are checked against the file before memory is allocated, and rows are decoded one at a time. Any thread may
+// call these.
 
 #include <filesystem>
 #include <functional>
@@ -15,7 +15,7 @@
 
 namespace shvr {
 
-/// Maximum memory for a whole picture. PNGs and JPEGs that are stored in several passes cannot be read row by row.
+/// Maximum memory for a whole picture, needed for PNGs and JPEGs in several passes, which cannot be decoded row by row.
 inline constexpr int64_t MAX_WHOLE_PICTURE_BYTES = int64_t{256} << 20;
 
 struct PictureLayout {
@@ -29,18 +29,18 @@ struct PictureLayout {
 /// Returns, for example, "512x512 pixels of uint8" or "512x512 pixels of 3 samples of uint8".
 std::string in_words(const PictureLayout& layout);
 
-/// Takes row `y` of a picture: `samples` values per pixel, in native byte order.
+/// Receives row `y` of a picture: `samples` values per pixel, in native byte order.
 using TakeRow = std::function<void(int64_t y, std::span<const std::byte> row)>;
 
 class PictureFile {
 public:
     virtual ~PictureFile() = default;
     virtual const PictureLayout& layout() const = 0;
-    /// Calls `take` for the rows from `first_row` to before `end_row`, in order. May be called only once.
+    /// Calls `take` for rows `first_row` up to, but not including, `end_row`, in order. May be called only once.
     virtual void read(int64_t first_row, int64_t end_row, const TakeRow& take) = 0;
 };
 
-/// The format, recognised by the file's first bytes; null for all other formats, including TIFF.
+/// Returns the format, recognised by the file's first bytes; null for all other formats, including TIFF.
 std::optional<SliceFormat> picture_format(const std::filesystem::path& path);
 /// Reads the header. Fails, naming the file, if the header is damaged, of another format, or not supported.
 std::unique_ptr<PictureFile> open_picture(const std::filesystem::path& path, SliceFormat format);
@@ -52,16 +52,16 @@ std::unique_ptr<PictureFile> open_jpeg_picture(const std::filesystem::path& path
 
 /// Fails unless each side is 1 to 2^20.
 void check_picture_size(const std::filesystem::path& path, int64_t width, int64_t height);
-/// Fails if `pixel_bytes` exceeds `file_bytes` times `factor`, the maximum expansion of the file's compression: then
-/// the file is truncated, or made to exhaust memory.
+/// Fails if `pixel_bytes` exceeds `file_bytes` times `factor`, the maximum expansion of the file's compression. Such a
+/// file is truncated, or made to exhaust memory.
 void check_expansion(const std::filesystem::path& path, int64_t pixel_bytes, int64_t file_bytes, int64_t factor);
 
-/// Deleter of CFile, for files that C libraries use.
+/// Closes files that are read by C libraries; the deleter of CFile.
 struct CloseFile {
     void operator()(std::FILE* file) const { static_cast<void>(std::fclose(file)); }
 };
 using CFile = std::unique_ptr<std::FILE, CloseFile>;
-/// Fails for folders, pipes and devices. Sets the file's size.
+/// Opens a file and sets `bytes` to its size. Fails for folders, pipes and devices.
 CFile open_c_file(const std::filesystem::path& path, int64_t& bytes);
 
 }  // namespace shvr

@@ -1,4 +1,4 @@
-// JPEG: grey or colour, 8 bits each. Refuses a file that ends too early; libjpeg would fill the rest with grey.
+// Reads JPEG: grey or colour, 8 bits each. Refuses truncated files, whose missing rows libjpeg would fill with grey.
 
 #include <cstdio>
 
@@ -13,7 +13,7 @@
 namespace shvr {
 namespace {
 
-/// Every block of 8 x 8 pixels takes at least one bit of the file.
+/// Maximum samples per byte of a file: every block of 8 x 8 samples takes at least one bit.
 constexpr int64_t MAX_EXPANSION = 512;
 
 class JpegPicture final : public PictureFile {
@@ -55,7 +55,7 @@ public:
 
 private:
     static void leave(j_common_ptr jpeg) { std::longjmp(static_cast<JpegPicture*>(jpeg->client_data)->on_error_, 1); }
-    /// Records damage of the pixels; libjpeg by itself would only warn.
+    /// Turns warnings about damaged pixels into errors; libjpeg by itself would only print them.
     static void note(j_common_ptr jpeg, int level)
     {
         if (level < 0 && jpeg->err->msg_code != JWRN_EXTRANEOUS_DATA) leave(jpeg);
@@ -68,7 +68,7 @@ private:
         fail(path_.string(), ": is no sound JPEG (libjpeg: ", message, "); expected one that is complete");
     }
 
-    // On errors, libjpeg jumps back to the functions below; they create no objects that would have to be destroyed.
+    // On errors, libjpeg uses longjmp to return to the functions below, so these create no objects with destructors.
 
     void read_header()
     {

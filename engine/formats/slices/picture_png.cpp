@@ -1,4 +1,4 @@
-// PNG: 1 to 16 bits, grey, palette or colour.
+// Reads PNG: 1 to 16 bits, grey, palette or colour.
 
 #include <png.h>
 
@@ -44,7 +44,7 @@ public:
         }
         for (int64_t y = first_row; is_interlaced_ && y < end_row; ++y)
             take(y, std::span(pixels_).subspan(size_t(y) * row_bytes, row_bytes));
-        // After the last row, checks that the rest of the file is complete.
+        // After the last row, checks that the rest of the file is there as well.
         if (end_row == layout_.height) finish();
     }
 
@@ -61,7 +61,7 @@ private:
         fail(path_.string(), ": is no sound PNG (libpng: ", error_, "); expected one that is complete");
     }
 
-    // On errors, libpng jumps back to the functions below; they create no objects that would have to be destroyed.
+    // On errors, libpng uses longjmp to return to the functions below, so these create no objects with destructors.
 
     void read_header()
     {
@@ -87,7 +87,7 @@ private:
                  " bytes of them: save it without interlacing");
     }
 
-    /// Keeps values as stored, but expands palettes to grey or colours.
+    /// Asks libpng for values as stored, except that palettes are expanded to grey or colours.
     void set_conversions()
     {
         if (setjmp(png_jmpbuf(png_)) != 0) refuse();

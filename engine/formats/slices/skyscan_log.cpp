@@ -14,10 +14,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Maximum number of logs in a folder that are considered.
+/// Maximum number of logs in a folder to consider.
 constexpr int MAX_LOGS = 1000;
 
-/// The log with the longest name, among those in the slice's folder whose names are prefixes of the slice's name.
+/// Returns the log whose name is the longest prefix of the slice's name, among the logs in the slice's folder.
 std::optional<fs::path> log_of(const fs::path& slice)
 {
     const std::string name = lower_case(slice.filename().string());
@@ -38,7 +38,7 @@ std::optional<fs::path> log_of(const fs::path& slice)
     return found;
 }
 
-/// The values of the log by lower-case key; those of the section [Reconstruction] by "reconstruction/KEY".
+/// Returns the values of the log by lower-case key; keys in the section [Reconstruction] become "reconstruction/KEY".
 std::map<std::string, std::string> values_of(const fs::path& log)
 {
     std::map<std::string, std::string> values;

@@ -33,7 +33,7 @@ SliceName taken_apart(const fs::path& path)
     return name;
 }
 
-/// Compares numbers of any length, given as digits; fractions are decimal digits after a point.
+/// Compares numbers of any length, given as digits without leading zeros, perhaps with a decimal point and fraction.
 bool is_less(const std::string& a, const std::string& b)
 {
     const size_t whole_a = std::min(a.find('.'), a.size()), whole_b = std::min(b.find('.'), b.size());
@@ -49,8 +49,8 @@ bool comes_before(const SliceName& a, const SliceName& b)
     return a.file < b.file;
 }
 
-/// Reads the two numbers around the only point of each name as one decimal number, as in "z_8.5". All names must have
-/// the same pattern. Null if the names have no such point, or several points.
+/// Joins the two numbers around the point in names like "z_8.5" into one decimal number. All names must have the same
+/// pattern. Returns null unless the pattern has exactly one such point.
 std::optional<std::vector<SliceName>> with_decimals(std::vector<SliceName> names)
 {
     const std::string& pattern = names.front().pattern;
@@ -70,8 +70,8 @@ std::optional<std::vector<SliceName>> with_decimals(std::vector<SliceName> names
     return names;
 }
 
-/// The index of the number that counts the slices: the first number that differs from file to file and never decreases.
-/// Null if the names belong to several series.
+/// Returns the index of the number that counts the slices: the first number that increases from each file to the next.
+/// Null if there is none, because the names belong to several series.
 std::optional<size_t> counting_number(const std::vector<SliceName>& names)
 {
     for (size_t number = 0; number < names.front().numbers.size(); ++number) {
@@ -83,7 +83,7 @@ std::optional<size_t> counting_number(const std::vector<SliceName>& names)
     return {};
 }
 
-/// The name of the series: everything before the last number that differs.
+/// Returns a key for the name's series: its pattern, and its numbers before the last one that differs.
 std::string series_of(const SliceName& name, size_t last_number)
 {
     std::string series = name.pattern;
@@ -91,7 +91,7 @@ std::string series_of(const SliceName& name, size_t last_number)
     return series;
 }
 
-/// If one pattern has several files, removes the single pictures of other patterns, which are no slices of that series.
+/// If only one pattern has several files, removes the files of other patterns, which are single pictures and no slices.
 void remove_odd_pictures(const DiffersInSize& differs, std::vector<SliceName>& names,
                          std::vector<std::string>& warnings)
 {
@@ -118,7 +118,7 @@ void remove_odd_pictures(const DiffersInSize& differs, std::vector<SliceName>& n
     std::erase_if(names, [&](const SliceName& name) { return name.pattern != kept; });
 }
 
-/// Fails if the names belong to several series.
+/// Returns the index of the number that counts the slices. Fails if the names belong to several series.
 size_t check_one_series(const fs::path& folder, const char* kind, std::vector<SliceName>& names)
 {
     const bool is_one_pattern = names.front().pattern == names.back().pattern;
@@ -147,7 +147,7 @@ size_t check_one_series(const fs::path& folder, const char* kind, std::vector<Sl
              in_quotes(names.front().file), " and ", in_quotes(names[1].file),
              " among them; expected the numbered slices of one volume: number them, or open one of the files");
     }
-    // Distinguishes series by pattern or, within one pattern, by the numbers before the last one that differs.
+    // Tells series apart by pattern or, within one pattern, by the numbers before the last one that differs.
     size_t last_number = 0;
     for (size_t i = 0; is_one_pattern && i < names.front().numbers.size(); ++i) {
         const auto is_other = [&](const SliceName& name) { return name.numbers[i] != names.front().numbers[i]; };
@@ -170,7 +170,7 @@ void warn_of_gaps(const std::vector<SliceName>& names, size_t number, std::vecto
         const std::string& a = names[i - 1].numbers[number];
         const std::string& b = names[i].numbers[number];
         const std::optional<double> lower = number_of(a.empty() ? "0" : a), upper = number_of(b);
-        constexpr double MOST = 9e15;  // doubles represent every whole number up to this
+        constexpr double MOST = 9e15;  // doubles represent all whole numbers up to this limit
         if (!lower || !upper || *upper > MOST) return;
         const double found = *upper - *lower;
         if (!step) step = found;
@@ -189,7 +189,7 @@ constexpr std::string_view JPEG_EXTENSIONS[] = {".jpg", ".jpeg"};
 
 bool has_extension(const fs::path& path, std::span<const std::string_view> extensions)
 {
-    // Some systems keep metadata in files whose names begin with a dot ("._slice1.tif").
+    // Skips names that begin with a dot ("._slice1.tif"), under which some systems store metadata.
     return std::ranges::find(extensions, lower_case(path.extension().string())) != extensions.end() &&
            !path.filename().string().starts_with('.');
 }

@@ -1,5 +1,5 @@
-// A folder of PNG, BMP or JPEG slices in the order of the numbers in their names, or one such file as a volume of one
-// slice. x runs to the right, y down, z in the order of the slices.
+// Opens a folder of PNG, BMP or JPEG slices, sorted by the numbers in their names, or one such file as a volume of one
+// slice. x runs to the right, y down, z from slice to slice.
 
 #include <algorithm>
 #include <cstring>
@@ -30,8 +30,8 @@ const char* name_of(SliceFormat format)
     return "";
 }
 
-/// Caches decoded slices: bricks need a part of each slice, and pictures are decoded from their first row on. Evicts at
-/// random, as for blocks of TIFFs: repeated passes through a volume next need the least recently used slice.
+/// Caches decoded slices, because bricks need a part of each slice but pictures can only be decoded from their first
+/// row on. Evicts at random: a repeated pass through a volume would need just the slices that LRU has evicted.
 class SliceCache {
 public:
     using Slice = std::shared_ptr<const std::vector<std::byte>>;
@@ -103,7 +103,7 @@ public:
     }
 
 private:
-    /// Decodes slice z up to the last row of the box, and copies the box's part of the slice into `voxels`.
+    /// Decodes slice z from its first row to the box's last one, and copies the part inside the box into `voxels`.
     void decode(int64_t z, const VoxelBox& box, std::span<std::byte> voxels) const
     {
         const fs::path& path = pictures_.files[size_t(z)];
@@ -126,7 +126,7 @@ private:
     mutable SliceCache cache_;
 };
 
-/// The colour channel that the options choose. The alpha channel of grey pictures is dropped.
+/// Returns the colour channel that the options choose. The alpha channel of grey pictures is dropped.
 int channel_of(const std::string& name, const PictureLayout& layout, const OpenOptions& options,
                std::vector<std::string>& warnings)
 {

@@ -1,5 +1,5 @@
-// TIFF: a file of one or many pages, in any layout that libtiff decodes, with the conventions of ImageJ and OME-TIFF;
-// and (source_tiff_folder.cpp) a folder of such files, one slice each.
+// Opens TIFF: a file of one or many pages, in any layout that libtiff decodes, with the conventions of ImageJ and
+// OME-TIFF. source_tiff_folder.cpp opens folders of such files, one slice each.
 //
 // x runs to the right, y down, z in page order: right-handed, like the voxels of all formats here. Pages with a
 // mirrored Orientation are mirrored back.
@@ -74,8 +74,8 @@ private:
     mutable TiffBlockCache cache_;
 };
 
-/// Refuses files with fields of programs that store stacks in unsupported ways: read as a page, such a stack would
-/// become one slice instead of many.
+/// Refuses stacks of programs that store all slices in one page and mark the page by a private tag: read like any other
+/// page, it would become one slice instead of many.
 void refuse_other_stacks(const TiffFile& file, uint64_t directory)
 {
     constexpr std::pair<uint16_t, const char*> TAGS[] = {{33629, "MetaMorph (UIC2)"}, {33630, "MetaMorph (UIC3)"}};
@@ -100,7 +100,7 @@ public:
         const TiffPage first_page(*file_, directories_.pages.front().offset, 1);
         refuse_other_stacks(*file_, directories_.pages.front().offset);
 
-        // An OME-TIFF states which pages are planes. In other files, the pages with the most voxels are the planes.
+        // OME-XML states which pages hold slices; otherwise, the run of equal pages with the most voxels is taken.
         const uint32_t first = pages_to_show(directories_).front();
         description_ = read_description(*file_, first_page.text(TIFFTAG_IMAGEDESCRIPTION),
                                         layout_of_page(first).samples, TiffRole::whole);
@@ -155,7 +155,7 @@ private:
     }
     const TiffLayout& layout_of_page(uint32_t page) { return layout_of_kind(directories_.pages[page].kind); }
 
-    /// Corrects slices that scripts declared as channels by mistake. ImageJ composes at most 7 channels.
+    /// Takes channels as slices if there are more than the 7 that ImageJ can compose: some scripts confuse the two.
     void take_many_channels_as_slices()
     {
         if (description_.writer != TiffDescription::Writer::imagej || description_.channels <= 7 ||
@@ -166,8 +166,8 @@ private:
         std::swap(description_.channels, description_.slices);
     }
 
-    /// Handles a stack that was recorded as time points or channels of one slice each. Time points become slices if the
-    /// choice is "slices", or by default if there is only one channel; channels only if the choice is "slices".
+    /// Turns time points or channels of one slice each into slices. Time points are turned if the choice is "slices"
+    /// or, if nothing was chosen, if there is only one channel. Channels are turned only if the choice is "slices".
     void take_frames_as_slices()
     {
         TiffDescription& description = description_;
@@ -190,7 +190,7 @@ private:
         }
     }
 
-    /// Reorders pages from "channels vary fastest" to "time points vary fastest", the order of slices.
+    /// Reorders pages so that time points vary fastest, as slices must, and channels second.
     void put_frames_first(std::vector<uint32_t>& of_pages) const
     {
         const std::vector<uint32_t> before = of_pages;
@@ -198,7 +198,7 @@ private:
         for (size_t i = 0; i < before.size(); ++i) of_pages[i / channels + frames * (i % channels)] = before[i];
     }
 
-    /// Checks the pages of each kind. Kinds may differ only in how equal pictures are stored.
+    /// Checks the first page of each kind, and that the file can hold all pages of that kind.
     void check_kinds()
     {
         std::vector<int64_t> pages(directories_.kinds.size());
@@ -214,7 +214,7 @@ private:
         }
     }
 
-    /// The run of equal pages with the most voxels. All other pages come before or after the run, and are left out.
+    /// Returns the run of equal pages with the most voxels. The pages before and after the run are left out.
     std::vector<uint32_t> main_series(const std::vector<uint32_t>& pages)
     {
         if (pages.size() < directories_.pages.size()) {
@@ -256,7 +256,7 @@ private:
                show_the_same(layout_of_page(a), layout_of_page(b));
     }
 
-    /// Fills the description's `pages` with indices into `shown_`, in ImageJ's order.
+    /// Checks the number of pages against ImageJ's description. Empty `pages` stand for ImageJ's order.
     void order_planes()
     {
         const int64_t planes = description_.slices * description_.channels * description_.frames;
@@ -278,8 +278,8 @@ private:
         description_.pages.clear();
     }
 
-    /// Checks ImageJ's layout for stacks above 4 GiB, which also works for smaller stacks: the file has only one
-    /// directory, and the voxels of the images follow each other without gaps.
+    /// Checks ImageJ's layout for stacks above 4 GiB, which smaller stacks may also use: the file has only one
+    /// directory, and the voxels of all images follow each other without gaps.
     void check_contiguous(int64_t planes)
     {
         const TiffPage page(*file_, directories_.pages.front().offset, 1);
@@ -298,7 +298,7 @@ private:
             if (extent.offset == first.offset + block * layout.block_height * layout.block_row_bytes()) continue;
             refuse("whose strips have gaps; expected strips that follow each other, or a page for each image");
         }
-        // No overflow: `planes` is at most 2^20; a page has at most 2^40 pixels, whose samples the file holds.
+        // page_bytes() cannot overflow: a page has at most 2^40 pixels, and the file holds all of its samples.
         int64_t needed = 0;
         if (__builtin_mul_overflow(planes, layout.page_bytes(), &needed) ||
             !file_->holds(uint64_t(first.offset), uint64_t(needed))) {
@@ -308,8 +308,8 @@ private:
         is_contiguous_ = true;
     }
 
-    /// Checks that the pages that OME-XML names are alike. If the writing of a file was aborted, pages are missing at
-    /// its end: their slices cannot be read, the others can.
+    /// Checks that the pages that OME-XML names are alike. If a program was stopped while writing, the last pages are
+    /// missing: their slices cannot be read, but all others can.
     void check_planes()
     {
         uint32_t lacking = 0;
@@ -339,7 +339,7 @@ private:
                                                      "aborted; their slices cannot be read"));
     }
 
-    /// Does the same as check_planes() for pages in several files.
+    /// Does the same as check_planes(), for a stack in several files.
     void check_planes_in_files()
     {
         std::map<std::pair<uint32_t, uint32_t>, TiffLayout> layouts;  // by file and kind
@@ -423,7 +423,7 @@ private:
     }
 
     static constexpr uint32_t LACKING_PAGE = TiffDescription::NO_PAGE - 1;
-    static constexpr uint32_t MAX_LACKING = 64;  ///< for each page that is there: bounds the memory by the file's size
+    static constexpr uint32_t MAX_LACKING = 64;  ///< missing pages per existing page; bounds memory by the file's size
 
     OpenOptions options_;
     std::unique_ptr<const TiffFile> file_;

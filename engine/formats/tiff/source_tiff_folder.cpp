@@ -1,5 +1,5 @@
-// A folder of TIFFs, one slice each, in the order of the numbers in their names (engine/formats/slices). Other kinds of
-// files are ignored.
+// Opens a folder of TIFFs, one slice each, sorted by the numbers in their names (engine/formats/slices). Ignores files
+// of other formats.
 
 #include <tiffio.h>
 
@@ -75,7 +75,7 @@ private:
         }
         const TiffDirectory& directory = directories.pages[shown.front()];
         const size_t number = shown.front() + 1;
-        // Directories in thousands of files are mostly alike, so libtiff reads only one directory of each kind.
+        // Thousands of files mostly have equal directories, so libtiff reads only one directory of each kind.
         const auto known = layouts_.find(directories.kinds[directory.kind].fields);
         if (known != layouts_.end()) {
             check_amount(file, known->second, 1);
@@ -89,7 +89,7 @@ private:
             }
             check_is_supported(page, layout);
             check_blocks(file, page, layout);
-            // Bounds the memory that a hostile folder can fill.
+            // Limits the memory that a maliciously made folder can fill.
             if (layouts_.size() < 64) layouts_.emplace(directories.kinds[directory.kind].fields, layout);
         }
         volume_.slices.push_back({uint32_t(index), uint32_t(number), directory.offset, 0});
@@ -127,7 +127,7 @@ std::unique_ptr<VolumeSource> open_tiff_folder(const fs::path& path, const OpenO
 {
     std::vector<SliceName> names = slice_names_in(path, extensions_of(SliceFormat::tiff), KIND);
     if (names.empty()) return nullptr;
-    // A TIFF of one page next to slices of another format is a preview.
+    // TIFFs next to more slices of another format are previews, unless there is only one and it has several pages.
     const auto has_one_page = [&] {
         return pages_to_show(read_directories(TiffFile(path / names.front().file))).size() == 1;
     };

@@ -10,10 +10,10 @@
 namespace shvr {
 namespace {
 
-/// Uncompressed rows that cannot be read straight to their destination are read in parts of this size.
+/// Uncompressed rows that cannot be read straight into their destination are read in parts of this size.
 constexpr int64_t PART_BYTES = int64_t{1} << 20;
 
-/// The part of a block inside a rectangle: its rows and columns in the block, and the first voxel that it fills.
+/// The part of a block that lies inside the rectangle, in rows and columns of the block; `voxels` is its destination.
 struct Part {
     int64_t block = 0;
     int64_t top = 0, bottom = 0, left = 0, right = 0;
@@ -112,7 +112,7 @@ private:
              " cannot be decoded: ", page_.complaint(), "; expected ", size, " bytes of voxels");
     }
 
-    /// Rows that are consecutive in both file and rectangle are read together.
+    /// Extends the current read by `bytes` if they follow it in both file and memory; otherwise begins a new read.
     void add_to_run(int64_t offset, std::span<std::byte> bytes)
     {
         const bool follows =
@@ -190,7 +190,7 @@ std::shared_ptr<TiffBlockCache::Entry> TiffBlockCache::entry_of(const Key& key)
 void TiffBlockCache::keep(const Key& key, const std::shared_ptr<Entry>& entry)
 {
     const std::lock_guard lock(mutex_);
-    // Evicts at random: with least-recently-used eviction, repeated passes through a large volume would never hit.
+    // Evicts at random: a repeated pass through a large volume would need just the blocks that LRU has evicted.
     while (!kept_.empty() && kept_bytes_ + entry->block.size() > MAX_BYTES) {
         random_ = random_ * 1664525u + 1013904223u;
         std::swap(kept_[random_ % kept_.size()], kept_.back());

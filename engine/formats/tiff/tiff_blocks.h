@@ -1,6 +1,6 @@
 #pragma once
-// Reads a rectangle of one page. Uncompressed samples are read straight to their destination. A block that is needed as
-// a whole is decoded into the destination; a block needed in part is decoded once and cached for neighbouring reads.
+// Reads a rectangle of one page. Uncompressed samples are read straight into their destination. Blocks inside the
+// rectangle are decoded into it; blocks that overlap it are decoded once and cached for neighbouring reads.
 
 #include <map>
 #include <mutex>
@@ -10,17 +10,17 @@
 
 namespace shvr {
 
-/// Place of a slice of a volume in its file.
+/// The place of a slice in the volume's files.
 struct TiffSlice {
     uint32_t file = 0;       ///< index into the volume's files
     uint32_t page = 1;       ///< number of the page in that file, for messages; 0: the file lacks it
     uint64_t directory = 0;  ///< in that file
-    /// ImageJ's long stacks have one directory. The slice's voxels lie this far behind those that the directory names.
+    /// For ImageJ's stacks with one directory: offset of the slice's voxels from those that the directory describes.
     int64_t shift_bytes = 0;
 };
 
-/// Caches decoded blocks: at most `MAX_BYTES`, but always the last block. Any thread may use it; if two threads want
-/// the same block, it is decoded once.
+/// Caches decoded blocks: at most `MAX_BYTES`, but always the latest block. Any thread may call it. If two threads need
+/// the same block, it is decoded only once.
 class TiffBlockCache {
 public:
     static constexpr size_t MAX_BYTES = size_t{64} << 20;
@@ -61,7 +61,7 @@ struct TiffRectangle {
     int64_t left = 0, top = 0, right = 0, bottom = 0;
 };
 
-/// Reads the rectangle (inside the page) into `voxels`, row by row. Fails if the page is not as `expected`, or broken.
+/// Reads a rectangle inside the page into `voxels`, row by row. Fails if the page is damaged or not as `expected`.
 void read_rectangle(const TiffFile& file, const TiffSlice& slice, const TiffLayout& expected, const TiffRecipe& recipe,
                     const TiffRectangle& rectangle, TiffBlockCache& cache, std::span<std::byte> voxels);
 

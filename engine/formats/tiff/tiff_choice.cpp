@@ -20,7 +20,7 @@ bool is_plain_word(const std::string& name)
     });
 }
 
-/// The numbers 1 to `count` in words: "1 or 2", "1, 2 or 3", "1 to 40".
+/// Returns the numbers 1 to `count` as text: "1 or 2", "1, 2 or 3", "1 to 40".
 std::string numbers_to(int64_t count)
 {
     if (count > 6) return sentence("1 to ", count);
@@ -29,7 +29,7 @@ std::string numbers_to(int64_t count)
     return text;
 }
 
-/// The words by which a user chooses each channel: its name if that is a word, otherwise its number.
+/// Lists the words by which a user can choose a channel: its name if that is a unique word, otherwise its number.
 std::string channel_choices(const std::vector<std::string>& names)
 {
     constexpr size_t MOST = 8;
@@ -84,7 +84,7 @@ bool is_grey_ramp(const std::vector<uint16_t>& palette)
     const auto last = double(palette.size() - 1);
     for (size_t i = 0; i < palette.size(); ++i) {
         const double expected = double(i) / last;
-        // Allows for both ways of storing a palette value: 8 bits in the higher byte, or 16 bits.
+        // The tolerance admits both usual forms of a palette value: 8 bits in the upper byte, and full 16 bits.
         if (std::abs(palette[i] / 65535.0 - expected) > 1.0 / 250.0) return false;
     }
     return true;
@@ -99,7 +99,7 @@ std::vector<TiffPixelChannel> palette_channels(const TiffPage& page, const TiffL
     for (int color = 0; color < 3; ++color) is_ramp = is_ramp && is_grey_ramp(palette_of(page, layout, color));
     if (is_ramp) return {{}};
     if (description.writer != TiffDescription::Writer::unknown) {
-        // Here the palette only serves to display the intensities, and is not part of them.
+        // In files by ImageJ or OME, the palette only colours the display; the intensities are the indices into it.
         warnings.emplace_back("the colours of its lookup table were left out");
         return {{}};
     }
@@ -136,7 +136,7 @@ std::vector<TiffPixelChannel> channels_of_pixel(const TiffPage& page, const Tiff
         }
         channels.push_back({name, int(sample)});
     }
-    // Some writers do not declare the fourth sample after red, green and blue; it is almost always alpha.
+    // Some writers do not declare the fourth sample after red, green and blue, which is almost always alpha.
     const bool is_rgb = layout.photometric == PHOTOMETRIC_RGB || layout.photometric == PHOTOMETRIC_YCBCR;
     if (is_rgb && samples == 4) channels[3].name = "alpha";
     const bool has_alpha = samples == 2 && channels[1].name == "alpha";

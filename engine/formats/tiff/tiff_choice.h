@@ -1,5 +1,5 @@
 #pragma once
-// The choices in a TIFF that holds more than one volume, and the user's choice. Any thread may call these functions.
+// The choices that a TIFF with more than one volume offers, and the user's choice. Any thread may call these functions.
 
 #include "engine/formats/tiff/tiff_description.h"
 #include "engine/formats/tiff/tiff_samples.h"
@@ -7,19 +7,19 @@
 
 namespace shvr {
 
-/// One of the volumes that the pixels of the pages can hold: one sample of each pixel, or one palette colour.
+/// One of the values that pixels can yield: one of their samples, or one colour of their palette entry.
 struct TiffPixelChannel {
     std::string name{};  ///< "" if the channel has only a number
     int sample = 0;
     int palette_color = -1;
-    bool is_usual = false;  ///< the default if no channel is chosen
+    bool is_usual = false;  ///< whether this is the default channel
 };
 
-/// Returns at least one. May add to `warnings`. A palette whose entry numbers are the intensities offers no choice.
+/// Returns at least one channel; may add to `warnings`. A palette that only displays its indices offers no choice.
 std::vector<TiffPixelChannel> channels_of_pixel(const TiffPage& page, const TiffLayout& layout,
                                                 const TiffDescription& description, std::vector<std::string>& warnings);
 
-/// Returns `options`. If no channel is chosen and `channels` has a usual one, chooses that one and adds a warning.
+/// Returns `options`. If they choose no channel and `channels` has a default, chooses the default and adds a warning.
 OpenOptions with_usual_channel(const OpenOptions& options, const std::vector<TiffPixelChannel>& channels,
                                std::vector<std::string>& warnings);
 
@@ -28,10 +28,10 @@ struct TiffChoice {
     int64_t frame = 0;   ///< from 0
 };
 
-/// The value of a choice that makes all channels, or all time points, the slices of one volume.
+/// The choice that turns all channels, or all time points, into the slices of one volume.
 inline constexpr const char* AS_SLICES = "slices";
-/// Returns the choice. Fails, listing the choices, if several exist and none is chosen, or the chosen one is missing.
-/// `may_be_slices`: whether AS_SLICES is one of the choices; the caller applies it.
+/// Returns the choice. Fails, listing the choices, if several exist and none is chosen, or if the chosen one is
+/// missing. `may_be_slices`: whether AS_SLICES is allowed, which is left to the caller to apply.
 TiffChoice choose(const std::string& subject, const OpenOptions& options, const std::vector<std::string>& names,
                   int64_t frames, bool may_be_slices = false);
 

@@ -15,7 +15,7 @@ namespace {
 constexpr double UM_PER_INCH = 25400.0;
 constexpr double UM_PER_CM = 10000.0;
 
-/// Returns the length of a unit in micrometres; null if it is not a known unit of length.
+/// Returns the length of a unit in micrometres; null if the unit is unknown or no length.
 std::optional<double> um_of(const std::string& unit)
 {
     constexpr std::pair<const char*, double> LENGTHS[] = {
@@ -41,7 +41,7 @@ std::optional<std::string> length_unit(const std::string& stated)
     return unit;
 }
 
-/// The number of pixels per unit according to the resolution fields.
+/// Number of pixels per unit, from the resolution fields.
 struct Resolution {
     std::optional<double> x, y;  ///< pixels per unit
     double um_per_unit = 0.0;    ///< 0: the fields name no unit
@@ -57,7 +57,7 @@ Resolution resolution_of(const TiffFile& file, uint64_t directory, const TiffPag
     const uint16_t unit = page.number16(TIFFTAG_RESOLUTIONUNIT, RESUNIT_INCH);
     if (unit == RESUNIT_INCH) resolution.um_per_unit = UM_PER_INCH;
     if (unit == RESUNIT_CENTIMETER) resolution.um_per_unit = UM_PER_CM;
-    // Resolutions that programs write for screens and printers; they say nothing about voxels. 1 stands for "unknown".
+    // Detects resolutions meant for screens and printers, which say nothing about voxels; 1 stands for "unknown".
     const double dots_per_inch = *resolution.x * (resolution.um_per_unit == UM_PER_CM ? 2.54 : 1.0);
     for (const double usual : {72.0, 75.0, 90.0, 96.0, 100.0, 120.0, 144.0, 150.0, 200.0, 300.0, 600.0, 1200.0}) {
         if (std::abs(dots_per_inch - usual) < 0.02 * 2.54) resolution.is_for_printing = true;
@@ -66,7 +66,7 @@ Resolution resolution_of(const TiffFile& file, uint64_t directory, const TiffPag
     return resolution;
 }
 
-/// Converts the spacings of y and z, which may be stated in other units than that of x, to the unit of x.
+/// Converts the spacings of y and z, which may be in other units than that of x, to the unit of x.
 void use_one_unit(TiffDescription& description)
 {
     for (int axis = 1; axis < 3; ++axis) {
@@ -88,7 +88,7 @@ void use_one_unit(TiffDescription& description)
     }
 }
 
-/// Sets the spacing of x and y, and its unit, from the resolution fields.
+/// Sets spacing and unit of x and y from the resolution fields.
 void add_resolution(TiffDescription& description, const Resolution& resolution)
 {
     const bool is_imagej = description.writer == TiffDescription::Writer::imagej;
@@ -102,7 +102,7 @@ void add_resolution(TiffDescription& description, const Resolution& resolution)
         return;
     }
     if (has_unit || (is_imagej && resolution.um_per_unit == 0.0)) {
-        // ImageJ's resolution fields state pixels per unit, where the unit is the one in its description.
+        // ImageJ's resolution fields count pixels per unit; the unit is in its description.
         description.spacing[0] = 1.0 / *resolution.x;
         description.spacing[1] = 1.0 / *resolution.y;
         return;
@@ -116,7 +116,7 @@ void add_resolution(TiffDescription& description, const Resolution& resolution)
         return;
     }
     if (resolution.um_per_unit == 0.0) {
-        // Without a unit, the two values state only the aspect ratio of a pixel.
+        // Without a unit, the two values state only the aspect ratio of a pixel; equal values add nothing.
         if (*resolution.x == *resolution.y) return;
         description.spacing[0] = 1.0;
         description.spacing[1] = *resolution.x / *resolution.y;
@@ -128,7 +128,7 @@ void add_resolution(TiffDescription& description, const Resolution& resolution)
     for (std::string& unit : description.unit) unit = "um";
 }
 
-/// Takes the placement. Resolution fields are 32-bit fractions; an exact spacing that agrees with them replaces them.
+/// Applies the lines of our own files. Their exact spacing replaces the resolution fields' rounded one if both agree.
 void take_place(VolumeInfo& info, const TiffDescription::Place& place, const std::string& unit)
 {
     constexpr double TOLERANCE = 1e-5;
@@ -185,7 +185,7 @@ void apply_tiff_spacing(VolumeInfo& info, const TiffDescription& stated, const T
     }
     glm::dvec3 spacing(description.spacing[0].value_or(1.0));
     spacing.y = description.spacing[1].value_or(spacing.x);
-    // ImageJ omits the distance between slices if it is 1.
+    // A missing distance between slices is 1 in ImageJ's files, since ImageJ omits that value.
     spacing.z = description.spacing[2].value_or(is_imagej ? 1.0 : spacing.x);
     const bool is_nothing = !unit && spacing == glm::dvec3(1.0);
     if (!description.spacing[2] && info.size.z > 1 && !is_nothing) {

@@ -1,6 +1,6 @@
 #pragma once
-// The descriptions of the whole stack that programs write into a TIFF's ImageDescription: "key=value" lines by ImageJ,
-// XML by OME-TIFF. Also the spacing, from the description or the page's resolution fields. Any thread may call these.
+// Reads descriptions of the whole stack from a TIFF's ImageDescription: "key=value" lines by ImageJ, XML by OME-TIFF.
+// Takes the spacing from the description or the page's resolution fields. Any thread may call these.
 
 #include <optional>
 #include <string>
@@ -16,14 +16,14 @@ struct TiffDescription {
     enum class Writer { unknown, imagej, ome };
     Writer writer = Writer::unknown;
 
-    /// Each count is 1 if not stated. Only channels with pages of their own are counted, not the colours of a pixel.
+    /// Counts are 1 if not stated. `channels` counts those with pages of their own, not the colours of a pixel.
     int64_t slices = 1, channels = 1, frames = 1;
-    /// Element z + slices * (c + channels * t) is the page (from 0) of slice z, channel c, frame t. Empty if pages are
-    /// in ImageJ's order: channels fastest, then slices, then frames.
+    /// Element z + slices * (c + channels * t) is the page (from 0) of slice z, channel c and frame t. Empty if pages
+    /// are in ImageJ's order: channels vary fastest, then slices, then frames.
     static constexpr uint32_t NO_PAGE = UINT32_MAX;
     std::vector<uint32_t> pages{};
-    /// For an OME stack in several files: the files, and for each of `pages` the index of the file that holds it. Empty
-    /// if all pages are in the file that has the description.
+    /// For an OME stack in several files: the files, and the index of the file that holds each of `pages`. Empty if all
+    /// pages are in the file with the description.
     std::vector<std::filesystem::path> files{};
     std::vector<uint32_t> file_of_page{};
     std::vector<std::string> channel_names{};  ///< may be fewer than `channels`; names may be ""
@@ -40,21 +40,21 @@ struct TiffDescription {
     Place place{};
     std::string content{};  ///< "mask" or "offsets", as stated in our own files; "" if not stated
 
-    bool counts_from_minus_32768 = false;  ///< true: signed 16 bits as ImageJ stores them
+    bool counts_from_minus_32768 = false;  ///< signed 16-bit values with 32768 added, as ImageJ stores them
     std::vector<std::string> warnings{};
 };
 
-/// Whether the file is the whole volume, or one of several with its slices. An OME-TIFF may refer to other files.
+/// Whether a file is opened as a whole volume (an OME-TIFF then includes files it refers to) or as one of many slices.
 enum class TiffRole { whole, slice };
 
-/// `samples`: number of channels of an OME-TIFF that each pixel holds. Fails if the description is of a known kind but
-/// broken. In the role `whole`, also fails if the description covers more than this file.
+/// `samples`: number of an OME-TIFF's channels that one pixel holds. Fails if a description of a known kind is damaged
+/// or, in the role `whole`, if a file that it refers to is missing.
 TiffDescription read_description(const TiffFile& file, std::string_view text, int samples, TiffRole role);
 
-/// Returns the content that a file states, as in `TiffDescription`; "" if it is no TIFF. Fails if the file is damaged.
+/// Returns `TiffDescription::content` of a file; "" if the file is no TIFF. Fails if the file is damaged.
 std::string content_of_tiff(const std::filesystem::path& path);
 
-/// Puts spacing and unit into `info`, with a warning for everything that had to be assumed. `page`: the first page.
+/// Sets spacing and unit of `info`, and adds a warning for each assumption. `page` is the first page.
 void apply_tiff_spacing(VolumeInfo& info, const TiffDescription& description, const TiffFile& file, uint64_t directory,
                         const TiffPage& page);
 

@@ -1,6 +1,6 @@
-// The chain of directories. A directory has a count, as many fields of 12 (BigTIFF: 20) bytes, and the offset of the
-// next directory. A field has a tag, a type, a count and a value, or the value's offset if it is longer than 4
-// (BigTIFF: 8) bytes. (TIFF 6.0 specification, section 2.)
+// Walks the chain of directories. A directory has a count, as many fields of 12 (BigTIFF: 20) bytes, and the offset of
+// the next directory. A field has a tag, a type, a count and a value or, if the value is longer than 4 (BigTIFF: 8)
+// bytes, the value's offset (TIFF 6.0 specification, section 2).
 
 #include <algorithm>
 #include <utility>
@@ -13,7 +13,7 @@
 namespace shvr {
 namespace {
 
-/// Maximum number of fields, as in libtiff: a larger count is assumed to come from a wrong offset.
+/// Maximum number of fields, as in libtiff: a larger count probably comes from a wrong offset.
 constexpr uint64_t MAX_FIELDS = 4096;
 
 enum Tag : uint16_t {
@@ -30,8 +30,8 @@ enum Tag : uint16_t {
     TILE_BYTE_COUNTS = 325,
 };
 
-/// Fields that must be equal in pages of one kind: subfile types, size, bits, compression, meaning, order of bits,
-/// orientation, samples, rows of a strip, planes, fax options, predictor, tiles, extra samples, sample format,
+/// Tags whose values must be equal in pages of one kind: subfile types, size, bits, compression, meaning, order of
+/// bits, orientation, samples, rows of a strip, planes, fax options, predictor, tiles, extra samples, sample format,
 /// sub-sampling.
 constexpr std::array<bool, 531> TELLS_KIND = [] {
     std::array<bool, 531> tells{};
@@ -55,12 +55,12 @@ struct Field {
     const std::byte* value = nullptr;  ///< 4 or 8 bytes
 };
 
-/// A moving window onto the file that combines many small reads into one.
+/// A buffered window into the file, which combines many small reads into one.
 class Window {
 public:
     explicit Window(const TiffFile& file) : file_(file) {}
 
-    /// Null if the file does not hold that many bytes at `offset`. The pointer is valid until the next call.
+    /// Returns null if the file does not hold that many bytes at `offset`. The pointer is valid until the next call.
     const std::byte* at(uint64_t offset, size_t bytes)
     {
         if (!file_.holds(offset, bytes)) return nullptr;
@@ -92,7 +92,7 @@ public:
           offset_bytes_(file.has_wide_offsets() ? 8 : 4)
     {}
 
-    /// Fills fields() and next(). `page` counts from 1 and is only for messages.
+    /// Reads the directory at `offset` for fields() and next(). `page` counts from 1 and is only used in messages.
     void read(uint64_t offset, size_t page)
     {
         const auto refuse = [&](const auto&... words) { fail(file_.path().string(), ": page ", page, words...); };
@@ -107,7 +107,7 @@ public:
         }
         size_t bytes = count_bytes_ + size_t(count) * field_bytes_ + offset_bytes_;
         start = window_.at(offset, bytes);
-        // Some files end exactly after the fields, and lack the offset of the next directory.
+        // Some files end right after the last directory's fields, without the offset of a next directory.
         lacks_next_ = start == nullptr && offset + bytes - offset_bytes_ == uint64_t(file_.size_bytes());
         if (lacks_next_) bytes -= offset_bytes_;
         if (lacks_next_) start = window_.at(offset, bytes);
@@ -123,7 +123,7 @@ public:
 
     size_t count() const { return count_; }
     uint64_t next() const { return next_; }          ///< 0: this directory is the last one
-    bool lacks_next() const { return lacks_next_; }  ///< the file ends before the offset of a next directory
+    bool lacks_next() const { return lacks_next_; }  ///< the file ends before the offset of the next directory
     size_t bytes() const { return bytes_; }
 
     Field field(size_t index) const
@@ -166,7 +166,7 @@ const char* name_of_tag(uint16_t tag)
     return tag == TILE_OFFSETS ? "TileOffsets" : "TileByteCounts";
 }
 
-/// The strips or tiles that a directory states, checked as far as possible without further reads.
+/// Checks the strips or tiles that directories state, as far as possible without further reads.
 class StripCheck {
 public:
     explicit StripCheck(const TiffFile& file) : file_(file) {}
@@ -190,7 +190,7 @@ public:
         (field.tag == STRIP_OFFSETS || field.tag == TILE_OFFSETS ? offset_ : bytes_) = value;
     }
 
-    /// Returns whether too many bytes were stated: more than the file holds, although the file holds all pixels.
+    /// Checks the last directory. Returns true if it states more bytes than the file holds, though all pixels fit in.
     bool finish(size_t page)
     {
         const bool states_too_many = !file_.holds(offset_, bytes_) && picture_.bytes() < bytes_;
@@ -214,7 +214,7 @@ public:
 private:
     struct Picture {
         uint64_t width = 0, length = 0, bits = 1, samples = 1, compression = 1;
-        /// Size in bytes of a strip that is the whole uncompressed page; the sizes of other strips are unknown.
+        /// Returns the size in bytes of an uncompressed page in a single strip; UINT64_MAX if the size is unknown.
         uint64_t bytes() const
         {
             uint64_t row_bits = 0, bytes = 0;
@@ -226,7 +226,7 @@ private:
 
     void look_at_picture(const Field& field, const Reader& reader)
     {
-        // With several samples per pixel, the bit depths are stored outside the field, and libtiff reads them.
+        // The bit depths of several samples are stored outside the field, and only libtiff reads them: 0 means unknown.
         const uint64_t value = field.count == 1 ? reader.value(field) : 0;
         if (field.tag == IMAGE_WIDTH) picture_.width = value;
         if (field.tag == IMAGE_LENGTH) picture_.length = value;
@@ -256,12 +256,12 @@ public:
         if (field.tag == IMAGE_LENGTH) length_ = value;
     }
 
-    /// Returns the kind of directory that has the fields added since the last call.
+    /// Returns the kind of the directory whose fields were added since the last call.
     uint32_t finish(const TiffFile& file, std::vector<TiffKind>& kinds, size_t page)
     {
         check_side(file, page, "ImageWidth", width_);
         check_side(file, page, "ImageLength", length_);
-        // Most pages have the same fields as the previous one.
+        // Skips the search if the page has the same fields as the previous one, as most pages do.
         if (last_ >= kinds.size() || kinds[last_].fields != fields_) {
             const auto found =
                 std::find_if(kinds.begin(), kinds.end(), [&](const TiffKind& kind) { return kind.fields == fields_; });
@@ -310,7 +310,7 @@ TiffDirectories read_directories(const TiffFile& file)
     KindFinder kind;
     uint64_t directory_bytes = 0;
     bool warned_of_bytes = false;
-    // Brent's cycle detection: remembers the offset of a page, and replaces it at every power of two.
+    // Detects cycles (Brent): remembers the offset of one page, and replaces it at every power of two.
     uint64_t remembered = 0;
     for (uint64_t offset = file.first_directory(); offset != 0; offset = reader.next()) {
         const size_t page = directories.pages.size() + 1;

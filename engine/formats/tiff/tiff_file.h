@@ -1,8 +1,8 @@
 #pragma once
-// A TIFF file and its chain of directories, read without libtiff, because libtiff takes some microseconds for each
-// directory, and a file may have a million. Finds only how many pages there are, which of them are alike and where they
-// start. libtiff (tiff_page.h) reads one page of each kind when the file is opened, and other pages when their voxels
-// are read. Nothing changes after construction; any thread may read.
+// A TIFF file and its chain of directories, read without libtiff, because libtiff takes some microseconds per
+// directory, and a file may have a million of them. Only finds how many pages there are, which of them are alike, and
+// where they start. libtiff (tiff_page.h) reads one page of each kind when the file is opened, and other pages when
+// their voxels are read. Nothing changes after construction; any thread may read.
 
 #include <array>
 #include <filesystem>
@@ -15,7 +15,7 @@
 
 namespace shvr {
 
-/// The maximum number of pages, which is also the maximum length of a volume's side.
+/// Maximum number of pages, equal to the maximum length of a volume's side.
 inline constexpr size_t MAX_TIFF_PAGES = size_t{1} << 20;
 
 class TiffFile {
@@ -53,11 +53,11 @@ struct TiffDirectory {
     uint32_t kind = 0;    ///< index into TiffDirectories::kinds
 };
 
-/// Pages with equal values in the fields for size, layout and meaning, compared as stored in the directory itself.
+/// A kind of page: pages with equal values in the fields about size, layout and meaning, compared in their stored form.
 struct TiffKind {
     size_t first_page = 0;
     bool is_reduced = false;  ///< whether the page is marked as a smaller copy of another page, or as a mask
-    std::string fields{};     ///< values of these fields; pages of two files are alike if these are equal
+    std::string fields{};     ///< stored values of those fields; also comparable between files
 };
 
 struct TiffDirectories {
@@ -73,7 +73,7 @@ TiffDirectories read_directories(const TiffFile& file);
 /// Returns the quotient of a rational field of the directory at `offset`, without libtiff's rounding to a float. Null
 /// if the field is missing, not finite, or not above 0.
 std::optional<double> rational_field(const TiffFile& file, uint64_t offset, uint16_t tag);
-/// Whether the directory at `offset` has the field.
+/// Whether the directory at `offset` has a field with this tag.
 bool has_field(const TiffFile& file, uint64_t offset, uint16_t tag);
 
 }  // namespace shvr

@@ -1,5 +1,5 @@
-// ImageJ's description: lines of "key=value"; the first line states ImageJ's version. (Written by ij/io/FileSaver.java,
-// read by ij/io/FileOpener.java.)
+// Reads ImageJ's description: lines of "key=value", the first of which states ImageJ's version. (ImageJ's
+// ij/io/FileSaver.java writes it, ij/io/FileOpener.java reads it.)
 
 #include <charconv>
 #include <cmath>
@@ -75,7 +75,7 @@ private:
     std::map<std::string, std::string> values_;
 };
 
-/// Reads space-separated numbers, one for each component of `Value`; null if they are malformed.
+/// Parses space-separated numbers, one for each component of `Value`; null if they are malformed.
 template <class Value, size_t COUNT>
 std::optional<Value> numbers_of(const std::string& text)
 {
@@ -114,7 +114,7 @@ void read_calibration(const Lines& lines, TiffDescription& description)
         return;
     }
     if (*function == 0.0 && offset == 0.0 && slope == 1.0) return;
-    // Function codes 20 and 21 mean no calibration; 21 is an uncalibrated optical density.
+    // In ImageJ, function codes 20 and 21 mean "no calibration"; 21 is shown as uncalibrated optical density.
     if (*function == 20.0 || *function == 21.0) return;
     description.warnings.push_back(
         *function == 0.0 ? sentence("intensities are calibrated as ", offset, " + ", slope,
@@ -132,7 +132,7 @@ TiffDescription read_imagej_description(const std::string& subject, std::string_
     description.channels = std::max<int64_t>(1, lines.count("channels"));
     description.frames = std::max<int64_t>(1, lines.count("frames"));
     description.slices = lines.count("slices");
-    // A file that states no number of slices has as many slices as there are images per channel and frame.
+    // If the number of slices is missing, it is the number of images per channel and frame.
     if (description.slices == 0) {
         description.slices = std::max<int64_t>(1, images / (description.channels * description.frames));
     }
@@ -149,7 +149,7 @@ TiffDescription read_imagej_description(const std::string& subject, std::string_
     description.unit[0] = unit;
     description.unit[1] = y_unit.empty() ? unit : y_unit;
     description.unit[2] = z_unit.empty() ? unit : z_unit;
-    // Old versions of ImageJ wrote a signed distance.
+    // Ignores the sign: old versions of ImageJ wrote a signed distance between slices.
     if (const std::optional<double> spacing = lines.number("spacing"); spacing && std::isfinite(*spacing)) {
         if (*spacing != 0.0) description.spacing[2] = std::abs(*spacing);
     }

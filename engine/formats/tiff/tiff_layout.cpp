@@ -10,14 +10,14 @@
 namespace shvr {
 namespace {
 
-/// Maximum size of a block that must be decoded, limited because it is decoded as a whole.
+/// Maximum size of a compressed block after decoding; a block is always decoded as a whole.
 constexpr int64_t MAX_BLOCK_BYTES = int64_t{1} << 31;
 
 struct Compression {
     int scheme;
     const char* name;
-    /// Maximum number of bytes that one byte can decode to, by the format's own rules, rounded up. 0: unknown, but one
-    /// bit decodes to at most one row. UNBOUNDED: formats that encode areas of one colour have no maximum.
+    /// Maximum number of bytes that one byte can decode to, rounded up. 0: not limited by bytes, but one bit decodes to
+    /// at most one row (fax). UNBOUNDED: no limit, since the format encodes whole areas of one colour.
     int64_t largest_ratio;
     bool is_read;
 };
@@ -56,7 +56,7 @@ const Compression* find_compression(int scheme)
     return found == std::end(COMPRESSIONS) ? nullptr : found;
 }
 
-/// The maximum number of bytes that `bytes` of the file can decode to.
+/// Returns the maximum number of bytes that `bytes` bytes of the file can decode to.
 int64_t most_decoded(const TiffLayout& layout, int64_t bytes)
 {
     const Compression* const known = find_compression(layout.compression);
@@ -209,7 +209,7 @@ void check_is_supported(const TiffPage& page, const TiffLayout& layout)
              "64 "
              "bits");
     }
-    // In fax formats one bit may encode a whole row. A row of a fax has few pixels; thousands of channels are refused.
+    // In fax formats, one bit can decode to a whole row. To keep rows short, only one sample of 1 bit is accepted.
     if (known->largest_ratio == 0 && ((layout.samples != 1 && !layout.is_planar) || layout.bits != 1))
         fail(page.subject(), ": has ", layout.samples, " samples of ", layout.bits, " bits a pixel by ", known->name,
              "; expected one of 1 bit, as there is in a fax");
@@ -251,7 +251,7 @@ TiffExtent extent_of_block(const TiffFile& file, const TiffPage& page, const Tif
     uint64_t bytes = TIFFGetStrileByteCount(page.handle(), index);
     const int64_t row_of_blocks = block / layout.blocks_across() % layout.blocks_down();
     const int64_t decoded = layout.rows_of_block(row_of_blocks) * layout.block_row_bytes();
-    // Old programs state more bytes than the pixels need: up to the next strip's start, or beyond the end of the file.
+    // Caps the size: old programs state excess bytes, up to the next strip's start or beyond the end of the file.
     if (layout.compression == COMPRESSION_NONE) bytes = std::min(bytes, uint64_t(decoded));
     const auto refuse = [&](const auto&... words) {
         fail(page.subject(), ": ", name_of_block(layout), block + 1, " of ", layout.blocks(), words...);
@@ -273,7 +273,7 @@ TiffExtent extent_of_block(const TiffFile& file, const TiffPage& page, const Tif
 void check_blocks(const TiffFile& file, const TiffPage& page, const TiffLayout& layout)
 {
     check_amount(file, layout, 1);
-    // Each block has at least one byte in the file, which bounds the memory needed for the list of blocks.
+    // Each block takes at least one byte of the file, so this bounds the memory for the list of blocks.
     if (layout.blocks() > file.size_bytes()) {
         fail(page.subject(), ": has ", layout.blocks(), " strips or tiles; expected at most one for each of the ",
              file.size_bytes(), " bytes of the file");

@@ -1,5 +1,5 @@
 #pragma once
-// Whole numbers as TIFF directories store them, in either byte order. Any thread may call this function.
+// Reads whole numbers from TIFF directories, in either byte order. Any thread may call this function.
 
 #include <bit>
 #include <cstddef>

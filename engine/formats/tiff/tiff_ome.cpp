@@ -1,5 +1,5 @@
-// OME-XML (https://docs.openmicroscopy.org/ome-model/): Pixels states the size of the stack, the spacing of its voxels
-// and the order of its planes; TiffData maps planes to pages.
+// Reads OME-XML (https://docs.openmicroscopy.org/ome-model/). Its Pixels element states the size of the stack, the
+// spacing of voxels and the order of planes; its TiffData elements map planes to pages.
 
 #include <tiffio.h>
 
@@ -15,7 +15,7 @@
 namespace shvr {
 namespace {
 
-/// The maximum size of the XML, limited because the parser takes several times as much memory.
+/// Maximum size of the XML; the parser takes several times as much memory.
 constexpr size_t MAX_XML_BYTES = size_t{16} << 20;
 
 /// Returns a node's name without its namespace: "OME:Image" -> "Image".
@@ -81,7 +81,7 @@ public:
     }
 
 private:
-    /// Reads the XML of the whole data set from another file in the same folder: "x.companion.ome", or a TIFF.
+    /// Reads the XML of the whole stack from another file in the same folder: "x.companion.ome", or a TIFF.
     TiffDescription read_companion(const pugi::xml_node& elsewhere)
     {
         const std::string stated = elsewhere.attribute("MetadataFile").value();
@@ -147,7 +147,7 @@ private:
         result_.slices = side(pixels, "SizeZ");
         result_.frames = side(pixels, "SizeT");
         result_.channels = side(pixels, "SizeC");
-        // The colours of a pixel are channels that share one page.
+        // SizeC also counts the samples of a pixel, which share a page; `channels` counts only those with own pages.
         if (result_.channels % samples_ != 0) {
             fail(subject_, ": SizeC is ", result_.channels, "; expected a multiple of the ", samples_,
                  " samples of a pixel");
@@ -175,7 +175,7 @@ private:
         return axis == 'Z' ? result_.slices : axis == 'C' ? result_.channels : result_.frames;
     }
 
-    /// Returns the index in `pages` of the plane whose number in DimensionOrder is `plane`.
+    /// Returns the index in `pages` of plane number `plane`, counted in the order DimensionOrder.
     size_t place_of(int64_t plane) const
     {
         int64_t at[3] = {};  // Z, C, T
@@ -218,7 +218,7 @@ private:
     void read_planes(const pugi::xml_node& pixels)
     {
         const auto planes = int64_t(result_.pages.size());
-        std::map<std::string, uint32_t> files;  // by the name in the XML; number 0 is this file
+        std::map<std::string, uint32_t> files;  // file numbers by their names in the XML; 0: this file
         std::vector<uint32_t> file_of_page;     // empty until a file is named
         int64_t stated = 0;
         bool is_stated = false;
@@ -251,7 +251,7 @@ private:
         for (int64_t i = 0; i < planes && !is_stated; ++i) result_.pages[place_of(i)] = uint32_t(i);
     }
 
-    /// Sets the files of a stack in several files. A single named file is this file, perhaps renamed.
+    /// Sets the files of a stack in several files. If only one file is named, it is this file, perhaps renamed since.
     void name_files(const std::map<std::string, uint32_t>& files, std::vector<uint32_t> file_of_page)
     {
         if (files.size() < 2 || role_ != TiffRole::whole) return;

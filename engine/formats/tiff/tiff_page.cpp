@@ -14,14 +14,14 @@ namespace shvr {
 
 struct TiffPage::Access {
     const TiffFile& file;
-    std::array<std::byte, 16> header{};  ///< the file's header, but with the offset of this page as the first directory
+    std::array<std::byte, 16> header{};  ///< the file's header, with this page's offset as the first directory
     size_t header_bytes = 0;
     int64_t position = 0;
     std::string complaint{};
 
     static Access& of(thandle_t handle) { return *static_cast<Access*>(handle); }
 
-    // Exceptions must not propagate through libtiff, which expects -1 for a failed read.
+    // An exception must not propagate through libtiff, so failed reads return -1, as libtiff expects.
     static tmsize_t read(thandle_t handle, void* bytes, tmsize_t count) noexcept
     {
         Access& access = of(handle);
@@ -58,7 +58,7 @@ struct TiffPage::Access {
         char text[256];
         std::vsnprintf(text, sizeof(text), format, values);
         static_cast<Access*>(access)->complaint = text;
-        return 1;  // handled, so libtiff's other handlers need not report it
+        return 1;  // handled: keeps libtiff from calling its global handlers
     }
     static int ignore(TIFF* /*tiff*/, void* /*access*/, const char* /*module*/, const char* /*format*/,
                       va_list /*values*/)
@@ -70,7 +70,7 @@ struct TiffPage::Access {
 TiffPage::TiffPage(const TiffFile& file, uint64_t directory, size_t page, int64_t max_memory_bytes)
     : file_(file), page_(page), access_(new Access{file})
 {
-    // A few of libtiff's messages bypass the handlers set for a file.
+    // Disables libtiff's global handlers, since a few of its messages bypass the handlers set for a file.
     static std::once_flag silence;
     std::call_once(silence, [] {
         TIFFSetErrorHandler(nullptr);
@@ -90,8 +90,8 @@ TiffPage::TiffPage(const TiffFile& file, uint64_t directory, size_t page, int64_
     TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), max_memory_bytes);
     TIFFOpenOptionsSetErrorHandlerExtR(options.get(), Access::complain, access_.get());
     TIFFOpenOptionsSetWarningHandlerExtR(options.get(), Access::ignore, nullptr);
-    // "m": no memory mapping, so that truncating the file while it is open causes a failed read, not a signal. "O":
-    // strip offsets are read on demand.
+    // "m": no memory mapping, so truncating the open file causes a failed read instead of a signal. "O": strip offsets
+    // are read only when needed.
     handle_ = TIFFClientOpenExt("TIFF", "rmO", access_.get(), Access::read, Access::write, Access::seek, Access::close,
                                 Access::size, nullptr, nullptr, options.get());
     if (handle_ == nullptr)
@@ -131,7 +131,7 @@ uint32_t TiffPage::number32(uint32_t tag, uint32_t fallback) const
 
 bool TiffPage::has(uint32_t tag) const
 {
-    // Space for any value that libtiff stores; the values are never read.
+    // Room for whatever value libtiff stores; only the result of the call matters.
     std::array<void*, 4> values{};
     return TIFFGetField(handle_, tag, &values[0], &values[1], &values[2], &values[3]) == 1;
 }

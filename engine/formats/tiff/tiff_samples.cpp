@@ -11,7 +11,7 @@
 namespace shvr {
 namespace {
 
-/// Returns sample `index` of a row in which samples of `bits` bits follow each other without gaps, highest bit first.
+/// Returns sample `index` of a row of samples of `bits` bits each, packed without gaps, highest bit first.
 uint32_t packed_sample(std::span<const std::byte> row, int64_t index, int bits)
 {
     const int64_t first_bit = index * bits;
@@ -80,7 +80,7 @@ std::vector<uint16_t> palette_of(const TiffPage& page, const TiffLayout& layout,
     }
     const size_t entries = size_t{1} << layout.bits;
     std::vector<uint16_t> palette(colors[color], colors[color] + entries);
-    // Some programs write 8-bit values into 16-bit entries. Like libtiff's tools, this code treats them as bytes.
+    // Some programs write 8-bit values into the 16-bit entries. Such palettes are scaled up, as in libtiff's tools.
     const auto is_byte = [](uint16_t entry) { return entry <= 255; };
     const bool are_bytes = std::all_of(colors, colors + 3, [&](const uint16_t* of_color) {
         return of_color != nullptr && std::all_of(of_color, of_color + entries, is_byte);

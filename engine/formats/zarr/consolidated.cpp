@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr int64_t MAX_BYTES = int64_t{256} << 20;
-constexpr int MAX_DEPTH = 3;  ///< maximum number of levels from an image to its arrays, as in v1/0
+constexpr int MAX_DEPTH = 3;  ///< maximum depth of arrays below the image, as in v1/0
 
 std::optional<Json> json_of(const fs::path& file)
 {
@@ -42,7 +42,7 @@ bool is_array(const fs::path& node)
     return document && document->value("node_type", Json()) == "array";
 }
 
-/// Returns the groups and arrays of an image as paths relative to `group`, a group above the image.
+/// Returns the groups and arrays from `group`, a group above the image, down to the image's arrays; relative paths.
 std::vector<fs::path> nodes_of(const fs::path& image, const fs::path& group, std::initializer_list<const char*> names)
 {
     std::vector<fs::path> nodes;
@@ -59,7 +59,7 @@ std::vector<fs::path> nodes_of(const fs::path& image, const fs::path& group, std
     add(group);
     add(image);
     std::error_code ignored;
-    // Folders of chunks are not searched: nothing below an array is a node.
+    // Does not search the folders of arrays, which contain only chunks.
     for (auto at = fs::recursive_directory_iterator(image, ignored); at != fs::end(at); at.increment(ignored)) {
         if (!at->is_directory(ignored)) continue;
         add(at->path());

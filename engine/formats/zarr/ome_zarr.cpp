@@ -92,7 +92,7 @@ void place_axes(const JsonNode& node, const std::vector<Axis>& axes, OmeImage& i
     if (!is_there[0] || !is_there[1] || !is_there[2]) node.refuse("axes of space called x, y and z");
 }
 
-/// Reads one finite number per axis; for scales, numbers must be above 0.
+/// Reads one finite number per axis. For scales, the numbers must be above 0.
 std::vector<double> read_numbers(const JsonNode& node, size_t axes, bool is_scale)
 {
     const std::string expected =
@@ -125,7 +125,7 @@ struct Transformation {
     }
 };
 
-/// Applies the transformations of `owner`: a dataset, or the multiscale, whose transformations hold for all datasets.
+/// Applies the transformations of `owner`, which is a dataset, or the multiscale (these apply to all datasets).
 void apply_transformations(const JsonNode& owner, size_t axes, Transformation& transformation)
 {
     constexpr const char* EXPECTED = "a list of at most 8 objects of type scale, translation or identity";
@@ -143,7 +143,7 @@ void apply_transformations(const JsonNode& owner, size_t axes, Transformation& t
     }
 }
 
-/// Returns factors that convert each axis to the unit of x if the units differ.
+/// Returns the factors that convert each axis to the unit of x; 1 for axes in that unit.
 glm::dvec3 unit_factors(const Path& path, const std::vector<Axis>& axes, OmeImage& image)
 {
     std::array<std::optional<std::string>, 3> units;

@@ -1,6 +1,6 @@
 #pragma once
-// The attributes of an OME-Zarr image (https://ngff.openmicroscopy.org, versions 0.1 to 0.5), in one common form. For
-// source_ome_zarr.cpp. Any thread may call these functions.
+// The attributes of OME-Zarr images (https://ngff.openmicroscopy.org, versions 0.1 to 0.5), in a form common to all
+// versions. For source_ome_zarr.cpp. Any thread may call these functions.
 
 #include <array>
 #include <filesystem>
@@ -15,7 +15,7 @@
 
 namespace shvr {
 
-/// The versions that can be written: 0.4 uses Zarr version 2, 0.5 uses Zarr version 3.
+/// The versions that this program can write: 0.4 uses Zarr version 2, 0.5 uses Zarr version 3.
 enum class OmeZarrVersion { v0_4, v0_5 };
 inline constexpr Spelling<OmeZarrVersion> OME_ZARR_VERSIONS[] = {{OmeZarrVersion::v0_4, "0.4"},
                                                                  {OmeZarrVersion::v0_5, "0.5"}};
@@ -43,16 +43,16 @@ struct OmeImage {
 };
 
 /// Reads the image's attributes from the node's `ome()`, which must have "multiscales". Fails if they violate the
-/// specification, have no z axis, or are of an unsupported version.
+/// specification, describe no z axis, or are of an unsupported version.
 OmeImage read_ome_image(const ZarrNode& node);
-/// Fails if a Zarr version 3 node has an "ome" object whose version is not 0.5, or "multiscales" without that object.
+/// For Zarr 3 nodes: fails if "ome" states a version other than 0.5, or if "multiscales" stands outside of "ome".
 void check_ome_version(const ZarrNode& node);
 
-/// Reads the path of a group or an array, relative to the node with these attributes. Fails if the path leads outside
-/// the node, whether by mistake or as an attack.
+/// Reads the path of a group or an array, relative to the node with these attributes. Fails if the path leads out of
+/// that node, by mistake or as an attack.
 std::string read_zarr_path(const JsonNode& node);
 
-/// Returns the specification's name of a unit ("um": "micrometer"); other units are returned unchanged.
+/// Returns the specification's name of a unit ("um": "micrometer"), or an unknown unit unchanged.
 std::string ome_unit(const std::string& unit);
 
 }  // namespace shvr

@@ -19,7 +19,7 @@ std::optional<std::array<uint8_t, 4>> rgba_of(const JsonNode& node)
     return channels;
 }
 
-/// Calls `take` for each entry; it fails for invalid entries. The first failure adds a warning that says `expected`.
+/// Calls `take`, which fails for invalid entries, for each entry. Only the first failure adds a warning (`expected`).
 template <class Take>
 void go_through(const JsonNode& list, const char* expected, std::vector<std::string>& warnings, const Take& take)
 {

@@ -1,7 +1,7 @@
 #pragma once
-// The label descriptions of an OME-Zarr label image (https://ngff.openmicroscopy.org/0.5/#labels-md; 0.4 has the same
-// descriptions): "image-label" with "colors" [{"label-value", "rgba"}] and "properties" [{"label-value", "name", ...}].
-// Any thread may call these functions.
+// Reads what an OME-Zarr label image says about its labels (https://ngff.openmicroscopy.org/0.5/#labels-md; the same in
+// 0.4): "image-label" with "colors" [{"label-value", "rgba"}] and "properties" [{"label-value", "name", ...}]. Any
+// thread may call these functions.
 
 #include <array>
 #include <cstdint>
@@ -18,15 +18,15 @@ struct LabelLook {
     std::string name{};                            ///< may be empty
 };
 struct LabelLooks {
-    std::vector<LabelLook> looks{};       ///< ascending; for a label that occurs twice, only its first entry
-    std::vector<std::string> warnings{};  ///< at most one per list, about the first invalid entry of the list
+    std::vector<LabelLook> looks{};       ///< sorted by label; if a label occurs twice, its first entry counts
+    std::vector<std::string> warnings{};  ///< at most one per list, about the list's first invalid entry
 };
 
-/// Whether the folder (or the path into an archive) holds a label image; false if that cannot be read.
+/// Whether the folder, or the path into an archive, holds a label image. False if that cannot be read.
 bool is_ome_zarr_label(const std::filesystem::path& folder);
-/// Empty if the folder (or the path into an archive) holds no label image. Fails if its attributes are not JSON.
+/// Empty if the folder, or the path into an archive, is no label image. Fails if its attributes are not JSON.
 LabelLooks read_label_looks(const std::filesystem::path& folder);
-/// The lines of an NRRD header that SHVR keeps with a label image, in its attribute "shvr"; empty if there are none.
+/// Returns the lines of an NRRD header that this program stores in a label image's attribute "shvr"; often none.
 std::vector<std::string> read_label_header(const std::filesystem::path& folder);
 
 }  // namespace shvr

@@ -28,9 +28,9 @@ constexpr int VERSION = 1;
 constexpr int64_t MAX_RECORD_BYTES = int64_t{1} << 20;
 constexpr size_t HEADER_BYTES = 64;
 constexpr char MAGIC[] = "SHVRTAB1";
-/// Maximum size of a table: enough for the ranges of 10^13 voxels.
+/// Maximum size of a table: enough for the ranges of bricks in a volume of 10^13 voxels.
 constexpr int64_t MAX_TABLE_BYTES = int64_t{2} << 30;
-/// Maximum number of bytes that one byte of zstd decodes to: four bytes, the smallest block, decode to 128 KiB.
+/// Maximum expansion of zstd: its smallest block, 4 bytes, decodes to 128 KiB, which is 32 KiB per byte.
 constexpr int64_t MAX_OUT_OF_A_BYTE = int64_t{32} << 10;
 
 // ---- volume.json ----------------------------------------------------------------------------------------------------
@@ -49,7 +49,7 @@ glm::dmat3 read_matrix(const JsonNode& node)
     return {rows[0].vector(any_number()), rows[1].vector(any_number()), rows[2].vector(any_number())};
 }
 
-/// Reads a provenance. Older projects lack this key; their values count as stated by the file.
+/// Reads where a value comes from. Projects by older versions lack this key; their values count as the file's.
 Provenance read_provenance(const JsonNode& node)
 {
     constexpr std::array<std::string_view, 3> NAMES{"assumed", "file", "given"};
@@ -120,7 +120,7 @@ std::vector<std::byte> content_of(const ProjectTable& table)
 
 uint64_t checksum_of(std::span<const std::byte> header, std::span<const std::byte> elements)
 {
-    // The header's hash seeds the hash of the elements, so the result covers header and elements.
+    // The header's hash seeds the elements' hash, so the result covers header and elements.
     return XXH3_64bits_withSeed(elements.data(), elements.size(), XXH3_64bits(header.data(), header.size()));
 }
 
@@ -283,7 +283,7 @@ std::vector<std::byte> to_bytes(const ProjectTable& table)
 
 namespace {
 
-/// Returns the content size that the frame states; it must fit the default and whole elements with keys.
+/// Returns the content size that the frame states. Fails unless it fits a default and a whole number of keyed elements.
 int64_t bytes_of_list(const Path& file, const ProjectTable& table, std::span<const std::byte> frame)
 {
     const unsigned long long stated = ZSTD_getFrameContentSize(frame.data(), frame.size());

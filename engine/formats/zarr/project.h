@@ -25,12 +25,12 @@ namespace shvr {
 
 /// The content of volume.json.
 struct ProjectRecord {
-    VolumeInfo info{};  ///< the volume, without name and format; its warnings are those of the import
+    VolumeInfo info{};  ///< the volume, without name and format; its warnings are the import's
     int levels = 1;
     VolumeStatistics statistics{};  ///< of level 0
     std::string content_hash{};     ///< of level 0; content_hash.h
     std::string source{};           ///< path of the file that the volume was imported from
-    std::string preparation{};      ///< description of the processing applied to the voxels; empty: none
+    std::string preparation{};      ///< description of the processing applied to the voxels; "": none
     double fill = 0.0;              ///< value of the voxels of chunks that are not stored; may be NaN
 };
 inline constexpr const char* PROJECT_RECORD = "shvr/volume.json";
@@ -44,30 +44,30 @@ struct ProjectTable {
     int level = 0;
     size_t element_bytes = 1;
     Size3 counts{0};
-    /// Native byte order. In a sparse table: the default, for elements without a key, then one element for each key.
+    /// Elements in native byte order. In a sparse table: first the default, used where no key is, then one per key.
     std::vector<std::byte> elements{};
     bool is_sparse = false;
-    std::vector<uint64_t> keys{};  ///< numbers of a sparse table's listed elements, ascending
+    std::vector<uint64_t> keys{};  ///< numbers of the elements listed in a sparse table, ascending
 
-    /// Returns the element of a brick or chunk by its number, also from a sparse table.
+    /// Returns the element for a brick or chunk by its number, also from a sparse table.
     std::span<const std::byte> at(int64_t number) const;
 };
 std::filesystem::path ranges_path(const std::filesystem::path& project, int level);
 std::filesystem::path checksums_path(const std::filesystem::path& project, int level);
 
-/// Fails, naming the file, if a table with every element would be too large. Call it before the work begins.
+/// Fails, naming the file, if a table with every element would be too large. Meant to be called before the work begins.
 void check_tables(const std::filesystem::path& project, const VolumeInfo& info);
 
-/// Whether a sparse table that lists this many elements is smaller than a table with every element.
+/// Whether a sparse table with `listed` elements is smaller than a table with every element.
 bool is_smaller_as_list(const ProjectTable& table, size_t listed);
-/// Returns a table in the form to store: with every element if that form is smaller or `is_small`, else sparse. So
-/// equal content has equal bytes, and older programs can read the tables of all volumes that they could import.
+/// Returns a table in the form to store: dense if that is smaller or if `is_small`, sparse otherwise. So equal content
+/// has equal bytes, and older versions, which lack sparse tables, can read those of all volumes that they could import.
 ProjectTable stored_form(ProjectTable sparse, bool is_small);
 std::vector<std::byte> to_bytes(const ProjectTable& table);
-/// Reads the table in `file`, sparse or not. Its kind, level, counts and element size must be those of `expected`.
+/// Reads the table in `file`, dense or sparse. Fails unless kind, level, counts and element size equal `expected`'s.
 ProjectTable read_project_table(const std::filesystem::path& file, const ProjectTable& expected);
 
-/// Decodes an element of ranges-LEVEL: two voxels, the smallest and the largest finite value. If no value is finite,
+/// Decodes an element of a ranges table: two voxels, the smallest and the largest finite value. If no value is finite,
 /// the first is larger than the second.
 ValueRange range_of(VoxelType type, std::span<const std::byte> element);
 

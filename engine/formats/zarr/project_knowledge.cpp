@@ -22,7 +22,7 @@ ProjectTable table_for(const VolumeInfo& info, int level)
             .counts = size_of_level(size_of_level(info.size, level), 5)};
 }
 
-/// Returns the chunks that have a checksum other than 0.
+/// Returns the chunks whose checksum is not 0, which are the stored ones.
 std::vector<StoredChunk> stored_chunks_of(const ProjectTable& table)
 {
     std::vector<StoredChunk> chunks;
@@ -45,7 +45,7 @@ void try_to(const Read& read, std::vector<std::string>& warnings)
     }
 }
 
-/// Side of a chunk, in voxels, that an import writes for every level.
+/// Side, in voxels, of the chunks that an import writes on every level.
 constexpr int64_t PROJECT_CHUNK = 64;
 
 std::string list_of(const std::vector<int64_t>& numbers)
@@ -55,7 +55,7 @@ std::string list_of(const std::vector<int64_t>& numbers)
     return list + "]";
 }
 
-/// Adds a warning for each array that differs from the array that the import wrote.
+/// Adds a warning for each array whose metadata differ from those that the import wrote.
 void check_arrays(const fs::path& folder, const ProjectRecord& record, std::vector<std::string>& warnings)
 {
     for (int level = 0; level < record.levels; ++level) {

@@ -33,7 +33,7 @@ namespace fs = std::filesystem;
 
 constexpr int64_t CACHE_BYTES = int64_t{64} << 20;
 constexpr int MAX_LEVELS = 24;
-/// Remote chunks that are requested together: as many decoded bytes, but not more chunks.
+/// Limits of one parallel request for remote chunks: their decoded bytes, and their number.
 constexpr int64_t PREPARED_BYTES = int64_t{64} << 20, MAX_PREPARED = 64;
 
 class OmeZarrSource : public VolumeSource {
@@ -109,7 +109,7 @@ private:
         });
     }
 
-    /// Returns the chunks of a box that must be loaded, in the order in which ZarrVolume::read asks for them.
+    /// Returns those chunks of a box that are not cached, in the order in which ZarrVolume::read requests them.
     std::vector<Size3> uncached_chunks(int level, const VoxelBox& box) const
     {
         const ZarrVolume& volume = volumes_[size_t(level)];
@@ -123,8 +123,8 @@ private:
         return chunks;
     }
 
-    /// A level whose size was rounded down lacks the last voxels along an axis. Adds the chunks that would contain only
-    /// such voxels.
+    /// Adds the chunks beyond the stored array that consist only of repeated voxels: a level whose size was rounded
+    /// down lacks its last voxels along an axis, and read_beyond() repeats the voxels before them.
     void add_beyond(int level, std::vector<glm::ivec3>& chunks) const
     {
         const ZarrVolume& volume = volumes_[size_t(level)];
@@ -142,7 +142,7 @@ private:
         });
     }
 
-    /// Reads a box. Where rounding down cut off the last voxel along an axis, repeats the voxel before it.
+    /// Reads a box. If rounding down cut off the last voxels along an axis, repeats the voxels before them.
     void read_beyond(int level, const VoxelBox& box, std::span<std::byte> voxels) const
     {
         const Size3 size = volumes_[size_t(level)].size();
@@ -221,7 +221,7 @@ Size3 size_along(const ZarrMetadata& metadata, const std::array<size_t, 3>& xyz)
     return {metadata.shape[xyz[0]], metadata.shape[xyz[1]], metadata.shape[xyz[2]]};
 }
 
-/// Returns why a dataset cannot be level `level`; empty if it can.
+/// Returns why a dataset cannot be level `level`, as a text for messages; empty if it can.
 std::string objection(const OmeImage& image, const ZarrMetadata& first, size_t dataset, const ZarrMetadata& metadata,
                       int level)
 {
@@ -251,8 +251,8 @@ std::string objection(const OmeImage& image, const ZarrMetadata& first, size_t d
         if (!(std::abs(ratio / factor - 1.0) < 1e-3)) {
             return sentence("is ", ratio, " times as coarse along ", "xyz"[axis], ", not ", factor, " times");
         }
-        // The centre of the level's first voxel must be the centre of the voxels it covers. If it is that of the first
-        // of them, the translation is assumed to be missing: older programs do not write it.
+        // A coarse voxel must be centred on the fine voxels that it covers. If it is centred on the first of these
+        // instead, the translation is assumed to be missing, since older programs do not write it.
         const double offset = (stated.translation ? (*stated.translation)[axis] : 0.0) -
                               (fine.translation ? (*fine.translation)[axis] : 0.0);
         const double voxels = offset / (*fine.scale)[axis];
@@ -264,7 +264,7 @@ std::string objection(const OmeImage& image, const ZarrMetadata& first, size_t d
     return {};
 }
 
-/// Warns if the axis names of the image and of its first level differ; since version 0.5 they must agree.
+/// Warns if the image and its first level name the axes differently; since version 0.5, the names must agree.
 void compare_names(const ZarrPlace& array, const OmeImage& image, const ZarrMetadata& metadata,
                    std::vector<std::string>& warnings)
 {
@@ -350,7 +350,7 @@ std::unique_ptr<VolumeSource> open_image(const ZarrPlace& place, const ZarrNode&
                    folder.string());
 }
 
-/// Returns the indices of the axes named x, y and z; null unless each name occurs exactly once.
+/// Returns the indices of the axes named x, y and z; null unless each of the names occurs exactly once.
 std::optional<std::array<size_t, 3>> named_axes(const ZarrMetadata& metadata)
 {
     std::array<size_t, 3> xyz{};
@@ -362,7 +362,7 @@ std::optional<std::array<size_t, 3>> named_axes(const ZarrMetadata& metadata)
     return xyz;
 }
 
-/// Opens a bare array, which states no spacing and, in version 2, nothing about its axes.
+/// Opens a bare array. It states no spacing, and a version 2 array does not even name its axes.
 std::unique_ptr<VolumeSource> open_array(const ZarrPlace& place, int version, const OpenOptions& options)
 {
     const fs::path folder = place.path_of("");
@@ -393,7 +393,7 @@ std::unique_ptr<VolumeSource> open_array(const ZarrPlace& place, int version, co
                    folder.string());
 }
 
-/// Lists the images in a group that is no image itself. bioformats2raw names the images 0, 1, ... or lists them.
+/// Returns the images in a group that is no image itself. bioformats2raw numbers the images (0, 1, ...) or lists them.
 std::vector<std::string> images_in(const ZarrPlace& group)
 {
     const ZarrPlace listing = group / "OME";
@@ -436,8 +436,8 @@ std::unique_ptr<VolumeSource> open_group(const ZarrPlace& place, const ZarrNode&
     return open_image(inner, *image, options);
 }
 
-/// Refuses an archive that is no image, and names the likely mistake: the folder was zipped instead of its content, or
-/// the archive holds something else.
+/// Refuses an archive that is no image. The message states the probable mistake: the folder was zipped instead of its
+/// content, or the archive holds something else.
 [[noreturn]] void refuse_archive(const fs::path& path, const ZarrPlace& place)
 {
     std::string first;

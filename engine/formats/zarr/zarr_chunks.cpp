@@ -13,10 +13,10 @@ namespace shvr {
 namespace {
 
 constexpr int64_t KEPT_INDEX_BYTES = int64_t{16} << 20;
-/// Maximum number of names to search for a name that looks like a chunk's but belongs to no chunk of this array.
+/// Maximum number of names that stray() searches for a name like a chunk's that belongs to no chunk of the array.
 constexpr int64_t MAX_NAMES_LOOKED_AT = 1024;
 
-/// Whether a key consists of numbers between any separators, perhaps after a "c", as in "0.1.2" or "c/0/1/2".
+/// Whether a key consists of numbers with separators between them, perhaps after a "c": "0.1.2" or "c/0/1/2".
 bool is_like_chunk(std::string_view key)
 {
     if (key.starts_with("c/") || key.starts_with("c.")) key.remove_prefix(2);
@@ -28,7 +28,7 @@ bool is_like_chunk(std::string_view key)
     }
 }
 
-/// A chunk's place in a shard, as stated in the index.
+/// The position of a chunk in a shard, as the shard's index states it.
 struct IndexEntry {
     uint64_t offset, bytes;
     auto operator<=>(const IndexEntry&) const = default;
@@ -40,8 +40,8 @@ uint64_t end_of(const IndexEntry& entry)
     return __builtin_add_overflow(entry.offset, entry.bytes, &end) ? ~uint64_t{0} : end;
 }
 
-/// Returns the entries that share bytes with another entry, ascending. Identical entries count as one, since some
-/// writers store equal chunks once.
+/// Returns the entries that overlap another entry, in ascending order. Entries with identical positions count as one,
+/// since some writers store equal chunks once.
 std::vector<IndexEntry> overlapping(std::vector<IndexEntry> entries)
 {
     std::ranges::sort(entries);
@@ -136,7 +136,7 @@ void ZarrChunks::prepare(std::span<const std::vector<int64_t>> chunks) const
     array_.store->prepare(wants);
 }
 
-/// Prepares the indices of the shards of these chunks that are not kept.
+/// Prepares the indices of these chunks' shards, except for indices that are cached.
 void ZarrChunks::prepare_indices(std::span<const std::vector<int64_t>> chunks) const
 {
     const ZarrSharding& sharding = *metadata_.sharding;
@@ -163,8 +163,8 @@ bool ZarrChunks::is_missing(std::span<const int64_t> chunk) const
     }
 }
 
-/// Calls `take` with the indices of each stored chunk of a shard, except chunks that lie beyond the end of the array.
-/// Returns false as soon as `take` does.
+/// Calls `take` with the indices of each stored chunk of a shard that lies inside the array. Returns false as soon as
+/// `take` returns false.
 template <class Take>
 bool ZarrChunks::list_shard(std::span<const int64_t> shard, const Take& take) const
 {
@@ -199,7 +199,7 @@ bool ZarrChunks::list(std::span<const std::optional<int64_t>> at, int64_t most,
         take(chunk);
         return true;
     };
-    std::string folder;  // the innermost folder that contains all matching chunks
+    std::string folder;  // the innermost folder with all matching chunks
     if (metadata_.separator == '/') {
         folder = metadata_.has_prefix ? "c/" : "";
         for (size_t axis = 0; axis + 1 < at.size() && at[axis]; ++axis) {
@@ -256,7 +256,7 @@ ZarrChunks::Part ZarrChunks::part_of(std::span<const int64_t> chunk, const std::
     return part;
 }
 
-/// Returns the index of a chunk's shard; unsigned, because it may wrap around in arrays of absurd sizes.
+/// Returns the number of a chunk's shard. Unsigned, so that overflow in absurdly large arrays only wraps around.
 uint64_t ZarrChunks::shard_number(std::span<const int64_t> chunk) const
 {
     const ZarrSharding& sharding = *metadata_.sharding;
@@ -268,7 +268,7 @@ uint64_t ZarrChunks::shard_number(std::span<const int64_t> chunk) const
     return number;
 }
 
-/// Returns a shard's index, with one part per chunk; empty if the shard does not exist.
+/// Returns a shard's index, with one Part per chunk; empty if the shard does not exist.
 Block ZarrChunks::index_of(const std::string& shard) const
 {
     const ZarrSharding& sharding = *metadata_.sharding;
@@ -312,7 +312,7 @@ std::vector<int64_t> chunk_numbers(const ZarrMetadata& metadata, std::string_vie
         numbers.push_back(*number);
         rest.remove_prefix(std::min(rest.size(), end + 1));
     }
-    // A key that spells the same numbers in another way, as in "00", is a different key.
+    // Rejects other spellings of the same numbers, as in "00", which are different keys.
     return metadata.key_of(numbers) == key ? numbers : std::vector<int64_t>();
 }
 

@@ -24,37 +24,37 @@ public:
     ZarrChunks(ZarrPlace array, ZarrMetadata metadata);
 
     const ZarrMetadata& metadata() const { return metadata_; }
-    /// Returns the file of a chunk, or of its shard. A chunk is identified by its index along each axis of the array.
+    /// Returns the file of a chunk or of its shard. A chunk is given by its index along each axis of the array.
     std::filesystem::path path_of(std::span<const int64_t> chunk) const;
-    /// Returns the chunk's file; for a chunk in a shard, the shard's file and the chunk's indices.
+    /// Returns a chunk's name for messages: its file or, in a shard, the shard's file and the chunk's indices.
     std::string name_of(std::span<const int64_t> chunk) const;
 
-    /// Returns the stored bytes; null if the chunk is missing. Fails if they cannot be read, or if there are more than
-    /// a chunk can need.
+    /// Returns the stored bytes; null if the chunk is missing. Fails if reading fails, or if there are more bytes than
+    /// a chunk can take.
     std::optional<std::vector<std::byte>> read(std::span<const int64_t> chunk) const;
-    /// Reads chunks of a remote array in parallel, for calls of `read` that follow. Failures are left to those.
+    /// Reads chunks of a remote array ahead, in parallel, for later calls of `read`, which also report the failures.
     void prepare(std::span<const std::vector<int64_t>> chunks) const;
     bool is_remote() const { return array_.store->is_remote(); }
     /// True if the chunk is certainly not stored; false if it is stored, or if that cannot be determined.
     bool is_missing(std::span<const int64_t> chunk) const;
     /// Calls `take` with the indices of every stored chunk that matches `at` (null: any index), in no particular order.
-    /// Stops and returns false if there are more than `most` matches, or if other names make listing much slower than
-    /// for `most` chunks. Reads only names and the indices of shards, and never probes for missing chunks. Fails if
-    /// names or indices cannot be read.
+    /// Stops and returns false if there are more than `most` matches, or if many other names make listing far slower
+    /// than for `most` chunks. Reads only names and the indices of shards, and never probes for missing chunks. Fails
+    /// if they cannot be read.
     bool list(std::span<const std::optional<int64_t>> at, int64_t most,
               const std::function<void(std::span<const int64_t> chunk)>& take) const;
-    /// Returns the path of a value, among the first few, whose name resembles a chunk's but names no chunk here:
-    /// indices lie beyond the array, or their number or spelling is wrong. Empty if no such value is found.
+    /// Searches a few values for a name that looks like a chunk's but is not: its indices lie beyond the array, or
+    /// their number or spelling is wrong. Returns the first such value's path; empty if there is none.
     std::string stray() const;
-    /// Decodes a stored chunk to voxels in native byte order, with axes in `metadata().order`.
+    /// Decodes a stored chunk to voxels in native byte order, with its axes in the order `metadata().order`.
     Block decoded(std::span<const std::byte> stored, const std::string& name) const;
 
-    /// The file that holds the metadata, and whether that file still exists.
+    /// These return the file that holds the metadata, and whether that file still exists.
     std::filesystem::path metadata_path() const { return array_.path_of(metadata_.key()); }
     bool is_there() const { return array_.has(metadata_.key()); }
 
 private:
-    /// The bytes of a chunk in its shard. Both numbers are ABSENT for a chunk that is not stored.
+    /// The position of a chunk in its shard. Both numbers are ABSENT for a chunk that is not stored.
     struct Part {
         uint64_t offset, bytes;
     };
@@ -75,7 +75,7 @@ private:
     mutable ChunkCache indices_;
 };
 
-/// Returns the indices of the chunk or shard that `key` names; empty if it names none of this array.
+/// Returns the indices of the chunk or shard with this `key`; empty if the array has no such chunk or shard.
 std::vector<int64_t> chunk_numbers(const ZarrMetadata& metadata, std::string_view key);
 
 }  // namespace shvr

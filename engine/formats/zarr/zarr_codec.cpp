@@ -29,7 +29,7 @@ void decompress_blosc(Bytes stored, std::span<std::byte> chunk, const std::strin
     if (stored.size() < BLOSC_MIN_HEADER_LENGTH) {
         fail(name, ": holds ", stored.size(), " bytes; expected a blosc header of ", BLOSC_MIN_HEADER_LENGTH);
     }
-    // The header's values are checked first: `blosc_cbuffer_validate` trusts them if they are consistent.
+    // Checks the header's values before `blosc_cbuffer_validate`, which trusts any values that are consistent.
     size_t bytes = 0, stored_bytes = 0, block_bytes = 0;
     blosc_cbuffer_sizes(stored.data(), &bytes, &stored_bytes, &block_bytes);
     if (stored_bytes != stored.size()) {
@@ -39,7 +39,7 @@ void decompress_blosc(Bytes stored, std::span<std::byte> chunk, const std::strin
     if (blosc_cbuffer_validate(stored.data(), stored.size(), &bytes) != 0 || bytes != chunk.size()) {
         fail(name, ": has a blosc header that contradicts itself; expected a complete chunk");
     }
-    // One thread, because chunks are already decoded in parallel.
+    // Uses one thread, because several chunks are already decoded in parallel.
     const int made = blosc_decompress_ctx(stored.data(), chunk.data(), chunk.size(), 1);
     if (made < 0 || size_t(made) != chunk.size()) {
         fail(name, ": cannot be decoded by blosc (error ", made, "); expected a complete chunk");
@@ -55,7 +55,7 @@ void decompress_zstd(Bytes stored, std::span<std::byte> chunk, const std::string
     if (made != chunk.size()) refuse_size(name, "decodes to", made, chunk.size());
 }
 
-/// A zlib stream that its destructor always ends.
+/// Owns a zlib stream, which its destructor always ends.
 struct Inflater {
     z_stream stream{};
     bool is_ready = false;
@@ -65,7 +65,7 @@ struct Inflater {
     }
 };
 
-/// Decodes zlib and gzip, the two wrappers of deflate; gzip data may have several members, one after the other.
+/// Decodes deflate data in a zlib or gzip wrapper. gzip data may consist of several members, one after the other.
 void decompress_deflate(Bytes stored, std::span<std::byte> chunk, const std::string& name)
 {
     Inflater inflater;
@@ -95,14 +95,14 @@ void decompress_deflate(Bytes stored, std::span<std::byte> chunk, const std::str
     if (made != chunk.size()) refuse_size(name, "decodes to", made, chunk.size());
 }
 
-/// Does the check of `check_stored_size` for one compressor; the sizes exclude checksums.
+/// Does what check_stored_size() does, for one compressor and without the bytes of checksums.
 void check_compressed_size(ZarrCompressor::Kind kind, size_t stored_bytes, size_t chunk_bytes, const std::string& name)
 {
     if (kind == ZarrCompressor::Kind::none) {
         if (stored_bytes != chunk_bytes) refuse_size(name, "holds", stored_bytes, chunk_bytes);
         return;
     }
-    // Maximum expansion. Deflate: 258 bytes from two bits. Zstd, even inside blosc: 128 KiB from a block of four bytes.
+    // Maximum expansion. Deflate: 258 bytes from two bits. Zstd, also inside blosc: 128 KiB from a block of four bytes.
     const bool is_deflate = kind == ZarrCompressor::Kind::zlib || kind == ZarrCompressor::Kind::gzip;
     const size_t most_out_of_a_byte = is_deflate ? 1032 : 32768;
     if (chunk_bytes / most_out_of_a_byte > stored_bytes) {
@@ -110,7 +110,7 @@ void check_compressed_size(ZarrCompressor::Kind kind, size_t stored_bytes, size_
     }
 }
 
-/// A chain of codecs: at most one compressor, and how many checksums are added before and after it.
+/// Summary of a chain of codecs: the compressor, if any, and the number of checksums before and after it.
 struct Steps {
     ZarrCompressor::Kind kind = ZarrCompressor::Kind::none;
     size_t before = 0, after = 0;
@@ -137,7 +137,7 @@ Steps steps_of(std::span<const ZarrCompressor> codecs)
 
 int64_t longest_stored(int64_t chunk_bytes)
 {
-    // Deflate, the worst case, adds five bytes to blocks of at least 16 KiB; headers and checksums are small.
+    // Deflate, the worst case, adds five bytes per block of at least 16 KiB; 4096 covers headers and checksums.
     return chunk_bytes + chunk_bytes / 1024 + 4096;
 }
 

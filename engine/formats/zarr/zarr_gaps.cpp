@@ -12,13 +12,13 @@
 namespace shvr {
 namespace {
 
-/// A brick with its apron touches at most this many chunks of usual size; probing those beats most listings.
+/// Up to this many chunks are probed instead of listed: it is faster, and enough for most bricks with their apron.
 constexpr int64_t FEW_FILES = 8;
 constexpr size_t MANY_LOOKS = 4096;
-/// Bits for a chunk's number along an axis, which is below 2^21.
+/// Bits of a chunk's number along one axis; numbers are below 2^21.
 constexpr int CODE_BITS = 21;
 
-/// Returns a number with bit i moved to bit 3 i.
+/// Returns `number` with bit i moved to bit 3 i.
 uint64_t spread(uint64_t number)
 {
     uint64_t code = 0;
@@ -26,7 +26,7 @@ uint64_t spread(uint64_t number)
     return code;
 }
 
-/// Returns the chunk's Morton code. Chunks of an aligned cube of 2^k chunks per side have consecutive codes.
+/// Returns the chunk's Morton code. In an aligned cube of 2^k chunks per side, all codes are consecutive.
 uint64_t code_of(const Size3& chunk)
 {
     return spread(uint64_t(chunk.x)) | spread(uint64_t(chunk.y)) << 1 | spread(uint64_t(chunk.z)) << 2;
@@ -42,7 +42,7 @@ glm::ivec3 chunk_of(uint64_t code)
 
 using Codes = std::span<const uint64_t>;
 
-/// Whether any of the codes, which all belong to the cube of 2^bits chunks at `corner`, lies in a box of chunks.
+/// Whether any of `codes`, sorted codes of chunks in the cube of 2^bits chunks per side at `corner`, lies in `box`.
 bool any_in(Codes codes, const Size3& corner, int bits, const VoxelBox& box)
 {
     const Size3 end = corner + (int64_t{1} << bits);
@@ -63,7 +63,7 @@ bool any_in(Codes codes, const Size3& corner, int bits, const VoxelBox& box)
 
 }  // namespace
 
-/// The known facts about a level. Access to any member requires the mutex.
+/// The known facts about a level. All members are guarded by `mutex`.
 struct ZarrGaps::Level {
     std::mutex mutex{};
     std::optional<std::vector<uint64_t>> codes{};     ///< codes of all stored chunks, ascending
@@ -84,7 +84,7 @@ struct ZarrGaps::Level {
         codes = std::move(found);
         is_missing = {};
     }
-    /// Lists the chunks if possible. A failure is not reported here: the read that needs the data reports it.
+    /// Lists the chunks if possible. Ignores failures, which are reported by the read that needs the data.
     void try_to_list(const ZarrVolume& volume)
     {
         if (is_unlistable) return;
@@ -111,13 +111,13 @@ ZarrGaps::~ZarrGaps() = default;
 
 std::optional<ValueRange> ZarrGaps::range(int level, const VoxelBox& box) const
 {
-    // Callers draw a picture meanwhile, and must not wait for a network.
+    // Remote chunks are not looked up: callers are drawing a picture, and must not wait for a network.
     if (volumes_[size_t(level)].is_remote()) return std::nullopt;
     ValueRange range{std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest()};
     for (int below = level; below >= 0; --below) {
         if (!are_missing(below, chunks_below(level, box, below)).value_or(false)) return std::nullopt;
         const ZarrVolume& volume = volumes_[size_t(below)];
-        // If the array was removed, its chunks are unknown rather than missing.
+        // If the array was removed, it is unknown which chunks it had.
         if (!volume.is_there()) return std::nullopt;
         const double fill = volume.fill();
         if (!std::isfinite(fill)) continue;
@@ -147,7 +147,7 @@ ZarrGaps::Chunks ZarrGaps::chunks_below(int level, const VoxelBox& box, int belo
 {
     const ZarrVolume& volume = volumes_[size_t(below)];
     const int64_t factor = int64_t{1} << (level - below);
-    // A level whose size was rounded down lacks its last voxels; the last stored voxels stand in for the lacking ones.
+    // Clamped, since a level whose size was rounded down lacks its last voxels: the last stored voxels replace them.
     const Size3 lower = glm::min(box.lower * factor, volume.size() - int64_t{1});
     const Size3 upper = glm::min(box.upper * factor, volume.size());
     return {lower / volume.chunk(), (upper - int64_t{1}) / volume.chunk() + int64_t{1}};

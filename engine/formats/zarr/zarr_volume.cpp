@@ -64,7 +64,7 @@ ZarrVolume::ZarrVolume(ZarrPlace array, ZarrMetadata metadata, ZarrView view)
     }
 }
 
-/// Returns the indices of a chunk along each axis of the array.
+/// Returns a chunk's index along each axis of the array, from its index along x, y and z.
 std::vector<int64_t> ZarrVolume::numbers_of(const Size3& chunk) const
 {
     std::vector<int64_t> numbers(view_.at.size());
@@ -97,7 +97,7 @@ Block ZarrVolume::load(const Size3& chunk) const
             fail(name, ": is damaged, or another program changed it; expected what the import wrote");
     }
     if (stored) return arranged(chunks_->decoded(*stored, chunks_->name_of(numbers)));
-    // An array that was removed must not look like one without chunks.
+    // Distinguishes an array that was removed from an array without chunks.
     if (!is_there()) {
         fail(chunks_->metadata_path().string(), ": no longer exists: ", reason_of(ENOENT),
              "; expected the array that was opened");

@@ -22,7 +22,7 @@ constexpr uint64_t MAX_OUT_OF_A_BYTE = 1032;
 
 FileDescriptor opened(const std::filesystem::path& path)
 {
-    // Without O_NONBLOCK, opening a FIFO blocks until a writer appears.
+    // Without O_NONBLOCK, opening a FIFO would block until a writer appears.
     FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
     if (!file) fail(path.string(), ": cannot be opened: ", reason_of(errno));
     return file;
@@ -41,7 +41,7 @@ uint32_t crc_of(std::span<const std::byte> bytes)
     return uint32_t(::crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
-/// A zlib stream for raw deflate data that its destructor always ends.
+/// Owns a zlib stream for raw deflate data, which its destructor always ends.
 struct RawInflater {
     z_stream stream{};
     bool is_ready = false;
@@ -100,7 +100,7 @@ void ZipArchive::read_at(uint64_t offset, std::span<std::byte> bytes) const
     }
 }
 
-/// Returns the offset of the entry's stored bytes, all of which must lie before the directory.
+/// Returns the offset of the entry's stored bytes. Fails unless all of them lie before the directory.
 uint64_t ZipArchive::data_of(const ZipEntry& entry) const
 {
     const std::string name = name_of(entry);

@@ -1,7 +1,7 @@
 #pragma once
-// A zip archive with random access. Its directory is read once, on opening; its entries, stored or deflated, are read
-// by name. Archives are untrusted (zip_directory.h). Nothing is ever unpacked into files. Several threads may call it
-// concurrently.
+// A zip archive with random access. Its directory is read once, on opening; its entries, stored or deflated, are
+// read by name. Archives are untrusted (zip_directory.h). Nothing is ever unpacked into files. Any thread may call
+// these.
 
 #include <filesystem>
 #include <memory>
@@ -20,17 +20,17 @@ public:
     explicit ZipArchive(std::filesystem::path path);
 
     const std::filesystem::path& path() const { return path_; }
-    /// All entries, sorted by name. The sizes are unverified until the entries are read.
+    /// Returns all entries, sorted by name. Their sizes are verified only when they are read.
     const std::vector<ZipEntry>& entries() const { return directory_.entries; }
     /// Null if there is none.
     const ZipEntry* find(std::string_view name) const;
 
-    /// Returns the decoded bytes; their size and CRC-32 must be as the directory states. Fails if they are more than
-    /// `max_bytes`, or if the entry is encrypted, compressed in another way, damaged, or outside the file.
+    /// Returns the decoded bytes. Fails if there are more than `max_bytes`, if their size or CRC-32 differs from the
+    /// directory's, or if the entry is encrypted, damaged, outside the file, or compressed by another method.
     std::vector<std::byte> read(const ZipEntry& entry, int64_t max_bytes) const;
-    /// Whether the entry is stored uncompressed, so that parts of it can be read.
+    /// Whether the entry is stored without compression, so that parts of it can be read.
     static bool is_plain(const ZipEntry& entry);
-    /// Reads bytes of a plain entry from `offset` on; the entry must have enough bytes. Its CRC-32 is not checked.
+    /// Reads bytes of a plain entry from `offset` on, all of which must exist. Does not check the CRC-32.
     void read_part(const ZipEntry& entry, int64_t offset, std::span<std::byte> part) const;
 
 private:

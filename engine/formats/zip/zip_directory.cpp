@@ -9,7 +9,7 @@
 namespace shvr {
 namespace {
 
-constexpr uint64_t END_BYTES = 22;      ///< size of the end record without the archive's comment
+constexpr uint64_t END_BYTES = 22;      ///< size of the end record, without the archive's comment
 constexpr uint64_t LOCATOR_BYTES = 20;  ///< size of zip64's locator, which lies right before the end record
 constexpr uint64_t END64_BYTES = 56;    ///< size of zip64's end record, without extensions
 constexpr uint64_t ENTRY_BYTES = 46;    ///< size of an entry, without name, extra fields and comment
@@ -23,7 +23,7 @@ constexpr uint32_t IN_ZIP64 = 0xffffffff;
 
 /// Where the directory is.
 struct End {
-    uint64_t at = 0;  ///< offset of the first end record, which is an upper limit of the directory's end
+    uint64_t at = 0;  ///< offset of the first end record, an upper bound for the directory's end
     uint64_t entries = 0, bytes = 0, offset = 0;
 };
 
@@ -44,7 +44,7 @@ void check_parts(const std::string& path, bool is_one_part)
     if (!is_one_part) fail(path, ": is one part of a multi-part archive; expected a single file: join the parts first");
 }
 
-/// Takes the values of zip64's end record, if a locator before the end record at `end.at` points to it.
+/// Takes the values of zip64's end record if a locator right before the end record, at `end.at`, points to one.
 void take_zip64(const std::string& path, const ReadAt& read_at, End& end)
 {
     if (end.at < LOCATOR_BYTES) return;
@@ -63,7 +63,7 @@ void take_zip64(const std::string& path, const ReadAt& read_at, End& end)
            little_endian<uint64_t>(record.data() + 48)};
 }
 
-/// Finds the last end record whose comment extends to the end of the file.
+/// Finds the last end record whose comment ends exactly at the end of the file.
 End find_end(const std::string& path, uint64_t file_bytes, const ReadAt& read_at)
 {
     const uint64_t count = std::min(file_bytes, END_BYTES + MAX_COMMENT);
@@ -82,7 +82,7 @@ End find_end(const std::string& path, uint64_t file_bytes, const ReadAt& read_at
     refuse(path, "has no end record: it is truncated, or not a zip archive");
 }
 
-/// Reads 64-bit values from an extra field, in the order of `values`, for fields of the entry that are all ones.
+/// Replaces those fields of the entry that are all ones by 64-bit values from the zip64 extra field, in its order.
 void take_zip64_sizes(const std::string& path, std::string_view extra, ZipEntry& entry)
 {
     const bool wanted[] = {entry.bytes == IN_ZIP64, entry.stored_bytes == IN_ZIP64, entry.header == IN_ZIP64};
@@ -103,13 +103,13 @@ void take_zip64_sizes(const std::string& path, std::string_view extra, ZipEntry&
         }
         return;
     }
-    // Without the zip64 extra field, a size of all ones is taken literally: 2^32 - 1.
+    // Without that extra field, a size of all ones is the actual size: 2^32 - 1.
 }
 
 std::vector<ZipEntry> entries_of(const std::string& path, const std::vector<char>& bytes, uint64_t count)
 {
     std::vector<ZipEntry> entries;
-    entries.reserve(size_t(count));  // the number of entries is bounded by the size of the directory
+    entries.reserve(size_t(count));  // `count` is bounded by the size of the directory
     std::string_view rest(bytes.data(), bytes.size());
     for (uint64_t number = 0; number < count; ++number) {
         if (rest.size() < ENTRY_BYTES || little_endian<uint32_t>(rest.data()) != ENTRY_MARK)
@@ -150,7 +150,7 @@ ZipDirectory read_zip_directory(const std::string& path, uint64_t file_bytes, co
     }
     ZipDirectory directory{.offset = end.offset, .bytes = read(read_at, end.offset, end.bytes)};
     std::vector<ZipEntry>& entries = directory.entries = entries_of(path, directory.bytes, end.entries);
-    // Writers that append, as zarr-python does when attributes change, leave the old entry in place.
+    // The last of equal names counts: zarr-python, for one, appends changed attributes and leaves the old entry.
     std::ranges::reverse(entries);
     std::ranges::stable_sort(entries, {}, &ZipEntry::name);
     const auto repeated = std::ranges::unique(entries, {}, &ZipEntry::name);

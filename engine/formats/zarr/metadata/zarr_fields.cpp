@@ -30,7 +30,7 @@ void put_whole(const JsonNode& fill, ZarrMetadata& metadata)
     put(static_cast<T>(fill.whole(int64_t{Limits::min()}, int64_t{Limits::max()})), metadata);
 }
 
-/// Sets the fill value from its bits: "0x", then two digits for each byte of the number, highest bits first.
+/// Sets the fill value from its bits as hexadecimal text: "0x", then two digits per byte, highest bits first.
 template <class Bits>
 bool put_bits(const JsonNode& fill, ZarrMetadata& metadata)
 {
@@ -76,7 +76,7 @@ std::vector<int64_t> read_zarr_chunk(const JsonNode& node, size_t axes)
 
 void read_zarr_fill(const JsonNode& node, ZarrMetadata& metadata)
 {
-    // A fill value of null leaves the voxels of missing chunks undefined; other readers return 0.
+    // The fill value null leaves the voxels of missing chunks undefined; like other readers, this one returns 0.
     if (!node.exists() || node.is_null()) return;
     switch (metadata.stored) {
         case StoredNumber::int64: return put_whole<int64_t>(node, metadata);

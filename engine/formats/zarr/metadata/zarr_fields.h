@@ -1,5 +1,5 @@
 #pragma once
-// Metadata fields common to both versions of Zarr. For zarr_metadata.cpp and zarr_v3.cpp. Any thread.
+// Reads metadata fields that both versions of Zarr have. For zarr_metadata.cpp and zarr_v3.cpp. Any thread.
 
 #include <vector>
 
@@ -15,8 +15,8 @@ std::vector<int64_t> read_zarr_sides(const JsonNode& node);
 /// Reads a shape like `read_zarr_sides`, but with exactly one number for each axis of the array.
 std::vector<int64_t> read_zarr_chunk(const JsonNode& node, size_t axes);
 
-/// Sets `fill` from "fill_value"; the voxel type must be set before. Version 3 may state floats as their bits, as in
-/// "0x7fc00000".
+/// Sets `fill` from "fill_value"; the voxel type must be set before. In version 3, floats may be stated by their bits,
+/// as in "0x7fc00000".
 void read_zarr_fill(const JsonNode& node, ZarrMetadata& metadata);
 nlohmann::json zarr_fill(const ZarrMetadata& metadata);
 

@@ -14,10 +14,10 @@
 
 namespace shvr {
 
-/// Maximum size of a chunk, limited because a chunk is decoded as a whole.
+/// Maximum size of a chunk, since a chunk is always decoded as a whole.
 inline constexpr int64_t MAX_CHUNK_BYTES = int64_t{256} << 20;
 
-/// One step of the conversion of a chunk's bytes to its stored bytes: a compressor or a checksum.
+/// One codec of the chain that encodes a chunk: a compressor or a checksum.
 struct ZarrCompressor {
     enum class Kind { none, blosc, zstd, zlib, gzip, crc32c };
     Kind kind = Kind::none;
@@ -27,7 +27,7 @@ struct ZarrCompressor {
     int shuffle = 1;  ///< shuffle of blosc: 0 none, 1 bytes, 2 bits
 };
 
-/// For version 3: chunks stored together in a shard, under one key, with an index of their positions
+/// For version 3: the layout of shards, which hold several chunks under one key, with an index of their positions
 /// (https://zarr-specs.readthedocs.io/en/latest/v3/codecs/sharding-indexed/).
 struct ZarrSharding {
     std::vector<int64_t> shape{};  ///< voxels of a shard along each axis, a multiple of those of a chunk
@@ -43,35 +43,35 @@ struct ZarrSharding {
 struct ZarrMetadata {
     int version = 2;                ///< version of Zarr
     std::vector<int64_t> shape{};   ///< voxels along each axis of the array, slowest first
-    std::vector<int64_t> chunks{};  ///< voxels of a chunk along each axis; an axis's last chunk has the full size too
+    std::vector<int64_t> chunks{};  ///< voxels of a chunk along each axis; chunks at an array's end are no smaller
     VoxelType type = VoxelType::uint8;
-    StoredNumber stored = StoredNumber::plain;  ///< if no voxel type holds the values, `type` is bits_type(stored)
+    StoredNumber stored = StoredNumber::plain;  ///< unless plain, `type` is only used to read the bits (bits_type)
     bool big_endian = false;
-    /// The array's axes in the order in which a chunk stores them, slowest first; empty: in the array's order.
+    /// The array's axes in the order in which chunks store them, slowest first; empty: the array's own order.
     std::vector<size_t> order{};
-    std::array<std::byte, 8> fill{};  ///< value of the voxels of missing chunks: the first bytes_of(type) bytes
+    std::array<std::byte, 8> fill{};  ///< value of voxels in missing chunks, in the first bytes_of(type) bytes
     bool has_prefix = false;          ///< names of chunks begin with "c"
     char separator = '.';             ///< separates the numbers in a chunk's name
-    /// The codecs in encoding order: at most one compressor, and checksums before and after it.
+    /// The codecs in the order of encoding: at most one compressor, with checksums before and after it.
     std::vector<ZarrCompressor> codecs{};
     std::optional<ZarrSharding> sharding{};
     std::vector<std::string> axes{};  ///< names of the axes, if the file states any
 
     size_t chunk_bytes() const;
-    /// Returns the distance in bytes from one voxel of a chunk to the next, along each axis.
+    /// Returns, for each axis, the distance in bytes between neighbouring voxels of a chunk.
     std::vector<size_t> strides() const;
-    /// Returns the name, within the array, of the chunk or shard with this index along each axis.
+    /// Returns the key, within the array, of the chunk or shard with the given index along each axis.
     std::string key_of(std::span<const int64_t> numbers) const;
-    /// Returns the name, within the array, of the file that holds the metadata.
+    /// Returns the key, within the array, of the metadata.
     const char* key() const { return version == 2 ? ".zarray" : "zarr.json"; }
 };
 
-/// Reads the metadata of an array. Fails if a field is missing, invalid or not supported (as are filters, and other
-/// types, codecs and grids), or if a chunk is larger than MAX_CHUNK_BYTES.
+/// Reads the metadata of an array. Fails if a field is missing, invalid or not supported (filters, and some types,
+/// codecs and grids are not), or if a chunk is larger than MAX_CHUNK_BYTES.
 ZarrMetadata read_zarr_metadata(const ZarrPlace& array, int version);
 
-/// Returns the text for the file `key()`; equal metadata give equal texts. For shards, the index must be little-endian,
-/// in the order of the array's axes, and have one checksum.
+/// Returns the text to write under `key()`; equal metadata give equal texts. In shards, the index must be
+/// little-endian, in the order of the array's axes, and have one checksum.
 std::string to_text(const ZarrMetadata& metadata);
 
 }  // namespace shvr

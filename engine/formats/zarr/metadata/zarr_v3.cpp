@@ -1,5 +1,5 @@
-// Reads the core of the specification, and the codecs that other programs write: bytes, transpose, blosc, gzip, zstd,
-// zlib (as numcodecs.zlib), crc32c and sharding_indexed. Anything unsupported is refused by name.
+// Reads the core of the specification and the codecs that other programs write: bytes, transpose, blosc, gzip, zstd,
+// zlib (as numcodecs.zlib), crc32c and sharding_indexed. The message about an unsupported codec names it.
 
 #include "engine/formats/zarr/metadata/zarr_v3.h"
 
@@ -19,10 +19,10 @@ using Json = nlohmann::json;
 using Kind = ZarrCompressor::Kind;
 
 constexpr size_t MAX_CODECS = 16;
-/// Maximum size of a shard's index, which is read as a whole; enough for four million chunks.
+/// Maximum size of a shard's index, which is read as a whole: enough for four million chunks.
 constexpr int64_t MAX_INDEX_BYTES = int64_t{64} << 20;
 
-/// Names with the prefix "numcodecs." come from zarr-python's numcodecs.zarr3; the prefix changes no stored byte.
+/// The prefix "numcodecs.", which zarr-python's numcodecs.zarr3 writes, does not change what a codec stores.
 constexpr Spelling<Kind> CODECS[] = {{Kind::blosc, "blosc"},         {Kind::zstd, "zstd"},
                                      {Kind::gzip, "gzip"},           {Kind::crc32c, "crc32c"},
                                      {Kind::zlib, "zlib"},           {Kind::blosc, "numcodecs.blosc"},
@@ -33,7 +33,7 @@ constexpr const char* KNOWN_CODECS =
 constexpr const char* CHAIN =
     "transpose as often as needed, then bytes or sharding_indexed, then at most one compressor and checksums";
 
-/// Returns the name of an extension, which is either an object with a name and perhaps a configuration, or only a name.
+/// Returns the name of an extension, which is an object with a name and perhaps a configuration, or just a name.
 std::string name_of_extension(const JsonNode& node, const char* expected)
 {
     if (!node.is_object() && !node.is_text()) node.refuse(expected);
@@ -88,7 +88,7 @@ bool read_is_big_endian(const JsonNode& codec, size_t voxel_bytes)
     return order.choice(orders) == 1;
 }
 
-/// Returns the order of the axes after `codec` transposes axes that are in the order `before`.
+/// Returns the order of the axes after a transpose codec; `before` is their order before it.
 std::vector<size_t> transposed(const JsonNode& codec, const std::vector<size_t>& before)
 {
     const JsonNode node = codec["configuration"].required("order", "a list of axes");
@@ -103,7 +103,7 @@ std::vector<size_t> transposed(const JsonNode& codec, const std::vector<size_t>&
     return order;
 }
 
-/// A chain of codecs, split into the kinds of codecs in the order that the specification demands.
+/// A chain of codecs, split into the specification's stages: array to array, array to bytes, and bytes to bytes.
 struct Chain {
     std::vector<size_t> order{};           ///< order of the axes after the transpositions
     std::optional<JsonNode> bytes{};       ///< the codec that converts an array to bytes
@@ -136,7 +136,7 @@ Chain read_chain(const JsonNode& node, const std::vector<size_t>& axes)
     return chain;
 }
 
-/// Returns the order of the axes; empty if it equals the array's own order.
+/// Returns `order`, or an empty list if it is the array's own order.
 std::vector<size_t> unless_plain(std::vector<size_t> order)
 {
     return std::ranges::is_sorted(order) ? std::vector<size_t>() : order;
@@ -157,7 +157,7 @@ void read_index(const JsonNode& configuration, ZarrSharding& sharding)
     sharding.is_index_first = place.exists() && place.choice(places) == 0;
 }
 
-/// Reads the metadata of shards. Afterwards `chunks` is the shape of the chunks inside a shard, the unit of reads.
+/// Reads the metadata of shards. Afterwards `chunks` is the shape of the chunks in a shard, which are read singly.
 void read_sharding(const Chain& outer, ZarrMetadata& metadata)
 {
     const JsonNode configuration = (*outer.bytes)["configuration"];
@@ -234,7 +234,7 @@ Json codec_of(const ZarrCompressor& codec, size_t voxel_bytes)
     return nullptr;
 }
 
-/// Writes the sharding codec. `codecs`: the codecs of each chunk in a shard.
+/// Returns the sharding codec's metadata. `codecs`: metadata of the codecs for each chunk in a shard.
 Json sharding_of(const ZarrMetadata& metadata, const Json& codecs)
 {
     const ZarrSharding& sharding = *metadata.sharding;

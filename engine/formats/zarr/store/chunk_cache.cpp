@@ -5,7 +5,7 @@
 namespace shvr {
 namespace {
 
-/// Bytes charged for an entry in addition to its voxels, so that entries without voxels (all fill) cannot pile up.
+/// Bytes counted for an entry besides its voxels; they keep entries without voxels (fill value only) from piling up.
 constexpr int64_t OVERHEAD_BYTES = 256;
 
 int64_t cost_of(const Block& block)

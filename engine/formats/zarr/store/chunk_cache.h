@@ -1,6 +1,6 @@
 #pragma once
-// A cache of recently used decoded chunks, limited in bytes. If two threads want the same chunk, it is decoded once:
-// the second thread waits for the first. Any thread may call it.
+// A cache of recently used decoded chunks, limited in bytes. If two threads need the same chunk, it is decoded once,
+// and the second thread waits for the first. Any thread may call it.
 
 #include <condition_variable>
 #include <cstdint>
@@ -26,12 +26,12 @@ public:
         auto operator<=>(const Key&) const = default;
     };
 
-    /// Returns the cached block, or else the result of `make`. An exception from `make` is rethrown and not cached:
-    /// threads that wait for the block then call their own `make`.
+    /// Returns the cached block, or else the result of `make`, which is then cached. If `make` throws, nothing is
+    /// cached, and other threads that wait for the block call their own `make`.
     std::shared_ptr<const Block> get(const Key& key, const std::function<Block()>& make);
 
-    bool has(const Key& key) const;  ///< whether the block is cached or being made
-    int64_t bytes() const;           ///< of cached blocks; exceeds the budget only if the latest block alone does
+    bool has(const Key& key) const;  ///< whether the block is in the cache or being decoded
+    int64_t bytes() const;           ///< size of the cached blocks; only a single large block can exceed the budget
 
 private:
     struct Entry {

@@ -8,7 +8,7 @@ namespace shvr {
 
 namespace {
 
-/// Bytes charged for an object in addition to its content.
+/// Bytes counted for an object in addition to its content.
 constexpr int64_t OBJECT_OVERHEAD_BYTES = 512;
 constexpr std::chrono::milliseconds TICK{20};
 

@@ -1,6 +1,6 @@
 #pragma once
-// Objects that were read ahead, until they are taken; limited in bytes. An object that is being read is waited for. Any
-// thread may call these.
+// Objects that were read ahead, limited in bytes; taking an object removes it. If an object is still being read, `take`
+// waits for it. Any thread may call these.
 
 #include <condition_variable>
 #include <cstdint>
@@ -17,20 +17,20 @@ namespace shvr {
 
 class PreparedObjects {
 public:
-    /// A key, and the first byte of a part, negative for last bytes; WHOLE: the whole object.
+    /// A key, and the first byte of a part (negative: counted from the end; WHOLE: the whole object).
     using Place = std::pair<std::string, int64_t>;
     static constexpr int64_t WHOLE = INT64_MAX;
 
     explicit PreparedObjects(int64_t budget_bytes) : budget_bytes_(budget_bytes) {}
 
-    /// Announces an object that this thread will read; false if another thread has announced it, or it is there.
+    /// Announces that this thread will read an object; false if it is there, or another thread announced it.
     bool announce(const Place& place);
     /// Provides an announced object.
     void provide(const Place& place, RemoteObject object);
-    /// Withdraws an announced object that was not read.
+    /// Withdraws the announcement of an object that could not be read.
     void withdraw(const Place& place);
-    /// Removes and returns an object, and waits for it if it was announced; null if it was not. Throws `Stopped` when
-    /// waits are over.
+    /// Removes and returns an object, after waiting for it if it was announced; null if it was not. Throws `Stopped` if
+    /// waiting is cancelled.
     std::optional<RemoteObject> take(const Place& place);
 
 private:
@@ -44,7 +44,7 @@ private:
     std::mutex mutex_;
     std::condition_variable provided_;
     std::map<Place, Entry> entries_;
-    std::list<Place> ages_;  ///< of objects that are there, oldest first
+    std::list<Place> ages_;  ///< places of the objects that are there, oldest first
     int64_t bytes_ = 0;
 };
 

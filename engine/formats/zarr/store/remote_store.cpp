@@ -24,10 +24,10 @@ using Clock = std::chrono::steady_clock;
 using State = RemoteObject::State;
 
 constexpr std::array<std::string_view, 4> METADATA_NAMES{"zarr.json", ".zattrs", ".zgroup", ".zarray"};
-/// Age of metadata that is asked for again, to notice that a volume was removed.
+/// Metadata older than this is requested again, to notice that a volume was removed.
 constexpr std::chrono::seconds METADATA_AGE{30};
 constexpr int64_t PREPARED_BYTES = int64_t{128} << 20;
-/// Parts of an object are read by one request if they are this close, up to a size.
+/// Parts of an object are merged into one request if the gap between them, and the request, are at most this large.
 constexpr int64_t MERGED_GAP_BYTES = int64_t{32} << 10, MERGED_BYTES = int64_t{8} << 20;
 
 bool is_metadata(std::string_view key)
@@ -36,7 +36,7 @@ bool is_metadata(std::string_view key)
     return std::ranges::find(METADATA_NAMES, name) != METADATA_NAMES.end() || name.ends_with(".json");
 }
 
-/// Several wanted parts of one object that one request reads.
+/// A request for one object that covers one or more wanted parts.
 struct Request {
     RemoteWant want{};
     std::vector<const ZarrWant*> parts{};
@@ -47,7 +47,7 @@ PreparedObjects::Place place_of(const ZarrWant& want)
     return {want.key, want.offset.value_or(PreparedObjects::WHOLE)};
 }
 
-/// Joins parts that lie close to each other. `wants` are sorted by key and offset.
+/// Merges parts that lie close to each other. `wants` must be sorted by key and offset.
 std::vector<Request> merged(std::span<const ZarrWant* const> wants)
 {
     std::vector<Request> requests;
@@ -71,7 +71,7 @@ std::vector<Request> merged(std::span<const ZarrWant* const> wants)
     return requests;
 }
 
-/// The part of a merged object that was wanted.
+/// Cuts the wanted part out of the response to a merged request.
 RemoteObject part_of(const RemoteObject& object, const Request& request, const ZarrWant& want)
 {
     RemoteObject part = object;
@@ -85,7 +85,7 @@ class RemoteStore final : public ZarrStore {
 public:
     explicit RemoteStore(RemoteFolder folder) : folder_(std::move(folder)), prepared_(PREPARED_BYTES) {}
 
-    /// Reads the metadata of the root, for which failures are reported here.
+    /// Reads the metadata of the root. Reports failures now, since the volume cannot be opened without that metadata.
     void begin() const
     {
         std::vector<std::string> keys(METADATA_NAMES.begin(), METADATA_NAMES.end());
@@ -193,7 +193,7 @@ private:
 
     static uint64_t hash_of(std::string_view text) { return XXH3_64bits(text.data(), text.size()); }
 
-    /// Fails if an object has changed since it was first seen. Objects without an ETag cannot be compared.
+    /// Fails if an object has changed since it was first read. Objects without an ETag cannot be compared.
     void compare(const std::string& key, const RemoteObject& object) const
     {
         if (object.state != State::found && object.state != State::missing) return;
@@ -216,7 +216,7 @@ private:
     {
         std::optional<RemoteObject> object =
             prepared_.take({want.key, want.part ? want.part->first : PreparedObjects::WHOLE});
-        // What was prepared may have been another part from the same byte on.
+        // Not the wanted part: another part that begins at the same byte was prepared.
         if (object && object->state == State::found && want.part && int64_t(object->bytes.size()) != want.part->bytes)
             object.reset();
         if (!object) object = std::move(folder_.get(std::span(&want, 1))[0]);
@@ -262,7 +262,7 @@ private:
     mutable std::atomic<bool> is_offline_ = false;
     mutable std::mutex mutex_;
     mutable std::unordered_map<std::string, Metadata> metadata_;
-    mutable std::unordered_map<uint64_t, uint64_t> etags_;  ///< by the hash of the key; 0: the object was missing
+    mutable std::unordered_map<uint64_t, uint64_t> etags_;  ///< hashes of ETags by hash of the key; 0: object missing
     mutable std::unordered_map<uint64_t, int64_t> sizes_;
 };
 

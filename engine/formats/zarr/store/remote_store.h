@@ -1,21 +1,21 @@
 #pragma once
-// The values of a Zarr hierarchy below an address, read over a network (engine/remote). Nothing is listed or written.
-// Metadata is kept in memory, and asked for again after half a minute; chunks are read once for each call of `read`, or
-// in parallel by `prepare`.
+// Reads the values of a Zarr hierarchy below an address over a network (engine/remote). Never lists or writes values.
+// Metadata is kept in memory, and requested again after half a minute. Chunks are read on each call of `read`, or in
+// parallel by `prepare`.
 //
-// The ETag of each object is remembered: an object that has another one later fails, since the volume changed while it
-// was open. A missing object (404) is a missing value. An object to which access is refused (403) fails, though it may
-// be a missing one in a bucket that may not be listed: it is never taken for an empty chunk. Any thread may call these.
+// The ETag of each object is remembered. If it has changed on a later read, the read fails, since the volume changed
+// while it was open. A missing object (404) is a missing value. If access is refused (403), the read fails: a bucket
+// that forbids listing answers 403 for missing objects too, but 403 never counts as an empty chunk. Any thread.
 
 #include "engine/formats/zarr/store/zarr_store.h"
 #include "engine/remote/remote_folder.h"
 
 namespace shvr {
 
-/// Asks for the metadata of the address itself. Fails if no server answers, or if access is refused.
+/// Opens a store by reading the metadata at the address. Fails if no server answers, or if access is refused.
 std::shared_ptr<const ZarrStore> open_remote_store(const std::string& address);
 std::shared_ptr<const ZarrStore> open_remote_store(RemoteFolder folder);
-/// A sentence if objects of a remote store were taken from the cache, since no server answered; empty otherwise.
+/// Returns a warning if objects of a remote store came from the cache because no server answered; empty otherwise.
 std::string offline_warning(const ZarrStore& store);
 
 }  // namespace shvr

@@ -14,7 +14,7 @@ ZarrNode version_3(const ZarrPlace& place)
     node.is_array = root["node_type"].choice(types) == 1;
     if (const JsonNode attributes = root["attributes"]; attributes.exists() && !attributes.is_object())
         attributes.refuse("an object");
-    // Consolidated metadata, zarr-python's copy of the metadata below a group, is ignored in favour of the originals.
+    // Ignores consolidated metadata, zarr-python's copy of the metadata below a group, in favour of the originals.
     if (!node.is_array) check_zarr_keys(root, {"zarr_format", "node_type", "attributes", "consolidated_metadata"});
     return node;
 }

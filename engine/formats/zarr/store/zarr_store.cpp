@@ -65,10 +65,10 @@ public:
     }
 
 private:
-    /// Maximum nesting. An array of many axes has a folder level for each axis, and a link may form a cycle.
+    /// Maximum depth of folders: an array has up to one folder level per axis, and links may form a cycle.
     static constexpr int MAX_FOLDERS = 20;
 
-    /// Lists a folder's keys. Hidden names are skipped: temporary files, or metadata of version 2.
+    /// Lists a folder's keys. Skips hidden names, which are temporary files or metadata of version 2.
     static bool list_folder(const fs::path& folder, const std::string& before, int folders,
                             const std::function<bool(std::string_view)>& take)
     {
@@ -91,8 +91,8 @@ private:
     fs::path folder_;
 };
 
-/// Size of a cache for deflated entries that are read in parts, such as shards that the archive's writer compressed
-/// again. Such entries are decoded as a whole, and the most recent are kept.
+/// Size of a cache for deflated entries that are read in parts, such as shards that were compressed again when zipped.
+/// A deflated entry can only be decoded as a whole, so the most recent ones are cached.
 constexpr int64_t KEPT_ENTRY_BYTES = int64_t{64} << 20;
 constexpr int64_t MAX_DEFLATED_SHARD_BYTES = int64_t{256} << 20;
 
@@ -162,7 +162,7 @@ struct PathIntoArchive {
     fs::path inside;  ///< empty: its root
 };
 
-/// Splits a path into an archive's path and the path inside it; null if no archive is on the path.
+/// Splits a path into the path of an archive and the path inside it; null if the path leads into no archive.
 std::optional<PathIntoArchive> split(const fs::path& path)
 {
     PathIntoArchive found{path, {}};
