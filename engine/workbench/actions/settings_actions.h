@@ -8,7 +8,7 @@ namespace shvr::ui {
 class PresetShelf;
 class SettingsEditor;
 
-/// Changes any number of settings by a patch of the session (session_patch.h). Lasting settings form a history step.
+/// Changes settings by a patch of the session (session_patch.h). Changes of lasting settings become a history step.
 struct Set {
     std::string patch;
 };

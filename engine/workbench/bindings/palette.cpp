@@ -152,7 +152,7 @@ std::vector<PaletteEntry> palette_entries(const Model& model, std::string_view t
         add_values(entries, model, text);
         add_listed(entries, model, text);
     }
-    // An action typed without arguments is invalid, but the completions below offer it; hides the error if words match.
+    // An action typed without arguments is invalid, but completed below: hides the error if there are other entries.
     if (!entries.empty() && text.find_first_of(" =") == text.npos) as_typed.clear();
     if (!is_done) entries.insert(entries.end(), as_typed.begin(), as_typed.end());
     add_completions(entries, text);

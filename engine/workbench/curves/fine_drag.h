@@ -1,6 +1,6 @@
 #pragma once
-// A drag that moves an item a tenth as far as the mouse while a modifier key is held. Pressing or releasing the
-// modifier during the drag causes no jump. Pure; any thread.
+// A mouse drag during which an item moves a tenth as far as the mouse while a modifier key is held. Pressing or
+// releasing the modifier causes no jump. Pure; any thread.
 
 #include <glm/glm.hpp>
 
@@ -11,9 +11,9 @@ public:
     static constexpr float SHARE = 0.1f;
 
     FineDrag() = default;
-    /// `mouse`: position where the drag begins. `held`: position of the dragged item, which may differ from `mouse`.
+    /// `mouse`: where the mouse is when the drag begins. `held`: position of the dragged item, which may be elsewhere.
     FineDrag(const glm::vec2& mouse, const glm::vec2& held) : mouse_(mouse), held_(held) {}
-    /// Returns the position of the item once the mouse is at `mouse`.
+    /// Returns the new position of the item, given the mouse position; `is_fine`: whether the modifier is held.
     glm::vec2 follow(const glm::vec2& mouse, bool is_fine)
     {
         held_ += (is_fine ? SHARE : 1.0f) * (mouse - mouse_);

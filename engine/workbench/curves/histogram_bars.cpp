@@ -11,13 +11,13 @@ namespace {
 
 constexpr int64_t MAX_VALUES = 65536;  ///< number of values of a 16-bit integer
 
-/// Returns the bin as VolumeSource::measure assigns it; values are relative to the minimum.
+/// Returns the bin into which VolumeSource::measure sorts a value; values are relative to the volume's minimum.
 size_t bin_of(double value, int64_t span, size_t bins)
 {
     return std::min(bins - 1, size_t(value / double(span) * double(bins)));
 }
 
-/// The possible voxel values: `intervals` equal steps from 0 to `span`. Each value may be rounded down or up.
+/// Assumed voxel values: from 0 to `span` in `intervals` equal steps, where each value may be rounded down or up.
 struct Lattice {
     int64_t span = 1, intervals = 1;
     double step() const { return double(span) / double(intervals); }
@@ -25,7 +25,7 @@ struct Lattice {
     double upper(int64_t k) const { return std::ceil(double(k) * double(span) / double(intervals)); }
 };
 
-/// Counts the possible values in each bin; a rounded value counts in every bin into which it may fall.
+/// Counts the assumed values per bin. A value that rounding may move into another bin counts in both bins.
 std::vector<int64_t> values_in_bins(const Lattice& lattice, size_t bins)
 {
     std::vector<int64_t> values(bins, 0);
@@ -38,7 +38,7 @@ std::vector<int64_t> values_in_bins(const Lattice& lattice, size_t bins)
     return values;
 }
 
-/// Returns whether voxels lie in a bin that cannot hold any value, which refutes the assumed values.
+/// Returns whether voxels lie in a bin that contains none of the assumed values, which disproves the assumption.
 bool is_refuted(const std::vector<int64_t>& values, const std::vector<int64_t>& counts)
 {
     for (size_t bin = 0; bin < counts.size(); ++bin)
@@ -46,7 +46,7 @@ bool is_refuted(const std::vector<int64_t>& values, const std::vector<int64_t>& 
     return false;
 }
 
-/// Returns how much the histogram jumps between successive bins that can hold values.
+/// Returns how much the logarithm of the counts per assumed value varies from bin to bin, summed over the histogram.
 double roughness(const std::vector<int64_t>& values, const std::vector<int64_t>& counts)
 {
     double sum = 0.0, last = std::numeric_limits<double>::quiet_NaN();
@@ -59,19 +59,19 @@ double roughness(const std::vector<int64_t>& values, const std::vector<int64_t>&
     return sum;
 }
 
-/// Determines the possible voxel values, as far as the histogram reveals them. `span` is always one of them.
+/// Finds the largest step of voxel values that the histogram is consistent with. `span` is always one of the values.
 Lattice lattice_of(int64_t span, const std::vector<int64_t>& counts)
 {
     const double bin_width = double(span) / double(counts.size());
-    // If the step is wider than a bin, the bins between two values are empty. A rounded value may fall into either of
-    // two bins, so most, but not all, of the bins without a value must be empty.
+    // If the step is wider than a bin, bins between two values are empty. As a rounded value may fall into either of
+    // two bins, a step is accepted even though some bins that contain an assumed value are empty.
     for (int64_t intervals = 1; double(span) > bin_width * double(intervals); ++intervals) {
         const Lattice lattice{span, intervals};
         const bool is_apart = span % intervals == 0 || lattice.step() >= std::max(4.0 * bin_width, 3.0);
         if (is_apart && !is_refuted(values_in_bins(lattice, counts.size()), counts)) return lattice;
     }
-    // If the step is narrower, bins differ by one in their number of values, which looks like a comb; dividing by the
-    // number of values that the right step gives makes the histogram smooth.
+    // If the step is narrower than a bin, the number of values per bin varies by one, so the histogram looks like a
+    // comb. Counts divided by the number of values per bin are smooth only for the right step.
     constexpr double CLEARLY = 0.6;
     Lattice best{span, span};
     double least = CLEARLY * roughness(values_in_bins(best, counts.size()), counts);
@@ -96,12 +96,12 @@ void add_values(const Lattice& lattice, double lowest, const std::vector<int64_t
     }
 }
 
-/// Closes small gaps: an intensity curve that maps few values to many, such as one that brightened a scan, skips some
-/// values. Extends each bar that has voxels halfway to the next such bar.
+/// Closes small gaps, which arise when a scan is brightened, or otherwise mapped by a curve that skips some values.
+/// Extends each bar that has voxels halfway to the next bar that has voxels.
 void join_small_gaps(std::vector<HistogramBar>& bars)
 {
     constexpr size_t MAX_GAP = 2;    // consecutive empty bars
-    constexpr size_t MIN_SHARE = 4;  // bars are joined if at least one bar is empty for every MIN_SHARE filled bars
+    constexpr size_t MIN_SHARE = 4;  // bars are joined if gaps hold at least one bar for every MIN_SHARE filled bars
     std::vector<size_t> filled;
     for (size_t i = 0; i < bars.size(); ++i)
         if (bars[i].voxels > 0.0) filled.push_back(i);

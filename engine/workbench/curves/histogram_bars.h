@@ -1,5 +1,5 @@
 #pragma once
-// The histogram of a volume as bars to draw, in bins that suit the values of its voxel type. Pure; any thread.
+// The histogram of a volume as bars to draw, whose widths suit the values that the volume can hold. Pure; any thread.
 
 #include <vector>
 
@@ -9,19 +9,19 @@ namespace shvr::ui {
 
 struct HistogramBar {
     double lower = 0.0, upper = 0.0;  ///< intensities
-    double voxels = 0.0;              ///< number per possible voxel value within the bar; for floats, in the whole bar
+    double voxels = 0.0;              ///< voxels per possible value in the bar; for floats, voxels in the whole bar
 };
 struct HistogramBars {
     std::vector<HistogramBar> bars;
-    std::vector<HistogramBar> fill{};  ///< one bar per fill value; these lie outside all other values
-    /// Voxel values are the minimum plus multiples of this step, rounded if the step is not a whole number; 0: voxels
-    /// are floats, or the step is unknown.
+    std::vector<HistogramBar> fill{};  ///< one bar for each fill value, outside the range of all other values
+    /// Step between possible voxel values, which are the minimum plus multiples of it (rounded if it is no whole
+    /// number); 0 if voxels are floats or the step is unknown.
     double step = 0.0;
 };
 
-/// Volumes are measured in 256 bins, and the number of integer voxel values per bin varies by one. Drawn directly, the
-/// smooth histogram of a volume with 300 grey values looks like a comb, as does that of values that are multiples of a
-/// step. So bars count voxels per possible value, and bars without a possible value are joined with others.
+/// Volumes are measured in 256 bins, into which a varying number of integer values fall. Drawn directly, the smooth
+/// histogram of a volume with 300 grey values would look like a comb, as would that of values that are multiples of a
+/// step. Bars therefore count voxels per possible value, and bars without a possible value are merged with others.
 HistogramBars histogram_bars(VoxelType type, const VolumeStatistics& statistics);
 
 /// Returns the height of a bar, 0 ... 1; `most` is the maximum count.

@@ -1,19 +1,19 @@
 #pragma once
-// The direction of the light as a point on the half of a ball that faces the viewer: x right, y up. Pure; any
+// Shows the direction of the light as a point on a ball, in the half that faces the viewer: x right, y up. Pure; any
 // thread.
 
 #include <glm/glm.hpp>
 
 namespace shvr::ui {
 
-/// Default direction towards the light, used if none is set: over the viewer's shoulder.
+/// Direction towards the light if the session sets none: over the viewer's shoulder.
 inline constexpr glm::dvec3 USUAL_LIGHT{0.3, 0.5, 1.0};
 
 /// Returns a unit vector.
 glm::dvec3 light_direction(const glm::dvec3& set);
-/// Projects a direction onto a ball of radius 1; for light from behind the ball, the result lies at its edge.
+/// Projects a direction onto a ball of radius 1. Light from behind the ball is shown at the ball's edge.
 glm::dvec2 place_on_ball(const glm::dvec3& direction);
-/// Returns the direction of a point on the ball; points outside the ball are moved to its edge.
+/// Returns the direction that a point on the ball stands for. Points outside the ball are first moved to its edge.
 glm::dvec3 direction_at(const glm::dvec2& place);
 
 /// The direction as angles: degrees to the right of the viewer, and degrees above the viewer.

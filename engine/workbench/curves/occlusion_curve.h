@@ -1,5 +1,5 @@
 #pragma once
-// The curve that maps arriving light to displayed light, edited by hand: points in a square with x and y from 0 to 1.
+// A curve edited by hand, from arriving ambient light to displayed light: points in a square with x and y from 0 to 1.
 // Pure; any thread.
 
 #include <optional>
@@ -13,13 +13,13 @@ namespace shvr::ui {
 
 using OcclusionPoints = std::vector<OcclusionPoint>;
 
-/// Converts the curve of a power to points, as a start for editing.
+/// Returns points that approximate the power function with this exponent, as a start for editing.
 OcclusionPoints points_of_power(double power);
-/// Returns the nearest point within `reach`, which is a distance along each axis.
+/// Returns the point nearest to `place` whose distance along each axis is at most `reach`; null if there is none.
 std::optional<size_t> point_under(const OcclusionPoints& points, const glm::dvec2& place, const glm::dvec2& reach);
-/// Moves a point within the square and between its neighbours, so that its index stays the same.
+/// Moves a point, but only within the square and between its neighbours, so that its index stays the same.
 OcclusionPoints moved(OcclusionPoints points, size_t point, const OcclusionPoint& to);
-/// Returns the index of the new point. Changes nothing if there are MAX_OCCLUSION_POINTS already.
+/// Inserts a point and returns its index. Changes nothing if there are already MAX_OCCLUSION_POINTS points.
 size_t add(OcclusionPoints& points, const OcclusionPoint& point);
 /// Removes a point; keeps at least two.
 OcclusionPoints without(OcclusionPoints points, size_t point);

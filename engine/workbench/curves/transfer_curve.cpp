@@ -80,7 +80,7 @@ size_t TransferCurve::add(double intensity, double opacity)
 {
     const TransferFunction before(points_);
     ControlPoint added{.intensity = intensity, .opacity = opacity};
-    // The function has no colour outside its points, so the colour of the end point is used there.
+    // The function has no colour beyond its end points, so a point added there takes the colour of the end point.
     if (!points_.empty()) added.color = glm::dvec3(before.at(std::clamp(intensity, before.lower(), before.upper())));
     const auto after = std::ranges::upper_bound(points_, intensity, {}, &ControlPoint::intensity);
     const auto index = size_t(after - points_.begin());

@@ -39,13 +39,13 @@ public:
         size_t point = 0;
         bool operator==(const Found&) const = default;
     };
-    /// Threshold lines, and the extent of their labels along x. The label of the paint threshold is in the first row.
+    /// The threshold lines, and the horizontal extent of their labels. The paint threshold's label is in the first row.
     struct Lines {
         double paint_threshold = 0.0, haptic_threshold = 0.0;
         glm::vec2 paint_word{0.0f}, haptic_word{0.0f};
     };
-    /// Hit distances. The mouse grabs points within `pixels`, then labels (in rows of height `label`), then lines. If
-    /// both lines coincide, it grabs the paint threshold, except in the row of the haptic threshold's label.
+    /// Maximum grab distances of the mouse: points within `pixels`, then labels (rows of height `label`), then lines.
+    /// If both lines coincide, the mouse grabs the paint threshold, except in the row of the haptic threshold's label.
     struct Reach {
         float pixels = 9.0f, label = 17.0f;
     };
@@ -54,17 +54,17 @@ public:
         : points_(function.points().begin(), function.points().end())
     {}
     const Points& points() const { return points_; }
-    /// The edited function, with values clamped to the range of a transfer function.
+    /// Returns the edited function, with values clamped to the range that transfer functions allow.
     TransferFunction function() const;
 
-    /// Returns the item under the mouse: points take precedence over lines; of several, the nearest.
+    /// Returns the item under the mouse. Points take precedence over lines; of several items, the nearest is returned.
     Found under(const CurveAxes& axes, const glm::vec2& mouse, const Lines& lines, const Reach& reach) const;
 
-    /// Adds a point with the colour that the function has there. Returns its index.
+    /// Inserts a point whose colour is that of the function at this intensity. Returns the point's index.
     size_t add(double intensity, double opacity);
     /// Removes a point unless only two are left. Returns the index of the point to select afterwards.
     size_t remove(size_t point);
-    /// Moves a point, clamped between its neighbours so that its index stays the same.
+    /// Moves a point, but only between its neighbours, so that its index stays the same.
     void move(size_t point, double intensity, double opacity);
     double held_between_neighbors(size_t point, double intensity) const;
     /// Shifts all points by `by`, limited so that the curve still overlaps [lowest, highest]. Returns the actual shift.
@@ -74,8 +74,8 @@ private:
     Points points_;
 };
 
-/// Returns the distance by which a wheel notch moves all points: a fraction of the displayed range, or a tenth of it if
-/// slow. If voxels are integers, the distance is a whole number, at least one.
+/// Returns how far one wheel notch shifts all points: a fraction of the displayed range, or a tenth of that if slow. If
+/// voxels are integers, the shift is a whole number, at least one.
 double wheel_shift(double notches, const CurveRange& range, bool is_slow, bool is_whole);
 
 }  // namespace shvr::ui

@@ -21,19 +21,19 @@ std::string short_name(const std::filesystem::path& path);
 
 struct WorkbenchOptions {
     View::Options view{};
-    bool has_servo = true;  ///< guidance and haptic devices run; false: guidance has no effect
-    /// Set for scripts, which do exactly what they state: settings become no steps and are not kept, saves write only
-    /// annotation, to the files that the session names, and the selection stays.
+    bool has_servo = true;  ///< enables guidance and haptic devices; false: guidance has no effect
+    /// Set while a script runs, which must do exactly what it states: settings become no history steps and are not
+    /// saved, saves write only the annotation files that the session names, and nothing is selected automatically.
     bool is_script = false;
     bool saves_outside = false;  ///< sessions may write outside their folders without asking
     bool allow_force = false;    ///< allows a haptic device with a verified profile to exert forces
-    /// Folder of the preferences, of kept transfer functions and of the example's copy; empty: there is none.
+    /// Folder for preferences, saved transfer functions and the user's copy of the example; empty: there is none.
     std::filesystem::path settings{};
-    bool has_preferences = true;      ///< false: the defaults, and no change of them is saved
+    bool has_preferences = true;      ///< false: uses default preferences, and saves no changes of them
     std::function<double()> now_s{};  ///< seconds of any clock; null: the system's
     std::string version{};            ///< the program's, for reports; empty: unknown
     DeviceSource devices{};           ///< source of haptic devices; if its functions are empty: this machine
-    /// Slices follow a probe that leaves their plane, and this move is logged; false: only logged actions move slices.
+    /// Slices follow a probe that leaves their plane, and their move is logged; false: only logged actions move slices.
     bool slices_follow = true;
     TextDrawer draw_texts{};  ///< draws labels into picture files; null: no labels
 };
@@ -52,7 +52,7 @@ struct Desk {
     MessageLog messages;
     bool are_messages_shown = false;  ///< while messages are shown, all of them count as read
     std::function<void(const std::string&)> log;
-    std::vector<std::string> logged_instead;  ///< lines to log instead of the action being carried out
+    std::vector<std::string> logged_instead;  ///< lines to log in place of the action being carried out
     Jobs jobs;
     Jobs savers{{.wake = {}, .seconds = {}, .first = Jobs::Number{1} << 32}};  ///< saves wait for no other job
     /// Both are the workbench's, which sets them.
@@ -60,11 +60,11 @@ struct Desk {
     std::function<Model()> model;
 
     void say(std::string text, Weight weight = Weight::done);
-    /// Logs these actions instead of the action being carried out. The point seen at a pixel depends on the paint and
-    /// the bricks at that moment, so the point's position is logged instead of the pixel.
+    /// Logs `actions` in place of the action being carried out. For example, the point seen at a pixel depends on the
+    /// paint and the bricks of that moment, so a replayable log states the point's position instead of the pixel.
     void log_instead(const Actions& actions);
     DocumentModel document_model() const;
-    /// Empty objects that a model's references refer to while no document is open.
+    /// Empty objects, to which the references in a model are bound while no document is open.
     struct Nothing {
         Session session;
         VolumeInfo volume;

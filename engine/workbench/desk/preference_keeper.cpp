@@ -27,7 +27,7 @@ void PreferenceKeeper::act(const BindKeys& action)
     keys_of_it.clear();
     preferences.unusable_keys.erase(action.shortcut);
     for (const std::string_view chord : words_of(action.keys)) keys_of_it.emplace_back(chord);
-    // A binding equal to the default is not stored, so that it follows if the user later chooses the other set of keys.
+    // Stores no binding that equals the default, so that the binding changes if the user chooses the other set of keys.
     if (Keymap(preferences.key_set, preferences.keys).chords_of(*shortcut) ==
         Keymap(preferences.key_set).chords_of(*shortcut))
         preferences.keys.erase(action.shortcut);
@@ -57,7 +57,7 @@ void PreferenceKeeper::act(const ForgetRecent& action)
     prefer(std::move(preferences));
 }
 
-/// Reads the file. An unreadable file stays as it is, and nothing is saved until it can be read.
+/// Reads the file. If that fails, the file stays as it is, and preferences are not saved until it can be read.
 void PreferenceKeeper::load()
 {
     if (options_.settings.empty() || !options_.has_preferences) return;
@@ -73,7 +73,7 @@ void PreferenceKeeper::load()
     for (const std::string& conflict : keymap_.conflicts()) say(conflict, Weight::warning);
 }
 
-/// Takes new preferences and saves them. If saving fails, the failure is reported and the preferences still apply.
+/// Applies new preferences and saves them. If saving fails, the failure is reported, but the preferences still apply.
 void PreferenceKeeper::prefer(Preferences preferences)
 {
     if (preferences == preferences_) return;

@@ -36,7 +36,7 @@ const TransferPreset& PresetShelf::own(const std::string& name) const
     return *found;
 }
 
-/// Returns an unused file name, never that of a preset that ships: both presets would look the same in the list.
+/// Returns the file for a preset of this name. Fails if a shipped preset has the name, since the list would show both.
 std::filesystem::path PresetShelf::free_file(const std::string& name) const
 {
     const std::filesystem::path file = preset_file(folder(), name);

@@ -1,5 +1,5 @@
 #pragma once
-// Transfer functions that the user saves for all scans, in a folder next to the preferences.
+// Transfer functions that the user saves for all scans, in a folder next to the file of preferences.
 
 #include "engine/session/transfer_presets.h"
 #include "engine/workbench/desk/service.h"

@@ -1,10 +1,10 @@
 #pragma once
-// The base of all services: short names for the members of the desk, and one step of the main loop.
+// The base class of all services: references to the members of the desk, and the service's step of the main loop.
 //
 // A service has its own state, carries out the actions whose rows name it (`act`), and contributes its part of the
-// model. Its header includes no other service: the functions of other services that it calls are members of its struct
-// `Others` (connected in services.h), so that a test can construct it alone. No such function is called before all
-// services are constructed.
+// model. Its header includes no other service: functions of other services that it calls are members of its struct
+// `Others` (connected in services.h), so that a test can construct the service alone. No such function is called before
+// all services are constructed.
 
 #include <functional>
 #include <string>
@@ -14,7 +14,7 @@
 
 namespace shvr::ui {
 
-/// A function that a service's constructor requires: code that leaves such a member unset does not compile.
+/// A function that must be set when a service is constructed: leaving such a member unset does not compile.
 template <class Signature>
 class Call : public std::function<Signature> {
 public:
@@ -35,13 +35,13 @@ protected:
     explicit Service(Desk& desk);
     virtual ~Service() = default;
 
-    /// State of a main-loop step that may fail and is then retried.
+    /// State of a step of the main loop that is retried after a failure.
     struct Attempt {
         std::string said;       ///< message of the last failure
         double failed_s = 0.0;  ///< time of the last failure; 0: never
         double again_s = 0.0;
     };
-    /// Runs `part`. A failure becomes a message, and `part` is retried a little later. DeviceLost is rethrown.
+    /// Runs `part`. A failure becomes a message, and later calls retry `part` after a pause. DeviceLost is rethrown.
     void attempt(Attempt& state, const std::function<void()>& part);
     void say(std::string text, Weight weight = Weight::done) { desk_.say(std::move(text), weight); }
     void log_instead(const Actions& actions) { desk_.log_instead(actions); }

@@ -1,5 +1,5 @@
 #pragma once
-// Window state other than the picture: dialogs, lists, full screen, and the passes window.
+// State of the window that is not part of the picture: dialogs, lists, full screen, and the window of passes.
 
 #include "engine/workbench/desk/preference_keeper.h"
 #include "engine/workbench/desk/service.h"
@@ -23,9 +23,9 @@ public:
     void act(const ShowFullScreen& action);
 
     bool is_full_screen() const { return is_full_screen_; }
-    /// Returns the requested target of the keyboard focus and clears the request; empty: none.
+    /// Returns the part of the window that should get the keyboard focus, and clears the request; empty: no request.
     std::string take_focus() { return std::exchange(focus_, {}); }
-    /// Returns the page that the browser is to show, and clears the request; empty: none.
+    /// Returns the page that the browser should open, and clears the request; empty: no request.
     std::filesystem::path take_page() { return std::exchange(page_, {}); }
     WindowModel model() const;
 

@@ -98,14 +98,14 @@ Document::Document(Renderer& renderer, Read read, const View::Options& view_opti
     take_kept_settings();
     choose_for_volume(session);
     begin_with_turning();
-    if (!is_script_) annotator.work().select_trace({});  // so that the next node is not linked with an earlier one
+    if (!is_script_) annotator.work().select_trace({});  // otherwise, the next node would be linked with an old one
     renderer.scene().show(annotator.document());
     renderer.scene().show_surfaces(surfaces, annotator.document().trace, session.groups);
     note_saved();
 }
 
 /// Selects a harmless tool, so that the first drag in an opened scan changes nothing, whatever tool was used last.
-/// Sessions of versions whose right button painted also state the paint tool. --set may still choose a tool.
+/// (Sessions of versions in which the right button painted state the paint tool, too.) --set may choose another tool.
 void Document::begin_with_turning()
 {
     const bool is_chosen =
@@ -119,7 +119,7 @@ void Document::choose_thresholds(Session& of) const
     shvr::choose_thresholds(of, volume(), statistics);
 }
 
-/// Restores the last view and probe position from the journal, even if they could not be saved.
+/// Restores the last view and probe position from the journal, in case the session file could not be written.
 void Document::take_kept_settings()
 {
     const SettingValues kept = without_overridden(annotator.work().kept_settings(), overridden_);
@@ -131,7 +131,7 @@ void Document::take_kept_settings()
     if (probe.voxel) touch.place(*probe.voxel * volume().spacing);
 }
 
-/// Chooses settings that neither the file nor the journal states. Call it after both are read: it changes neither.
+/// Chooses settings that neither the session file nor the journal states. Call it once both are read; writes neither.
 void Document::choose_for_volume(Session& of) const
 {
     if (!of.probe.node_radius_voxels) of.probe.node_radius_voxels = automatic_node_radius(volume());
@@ -239,7 +239,7 @@ Session Document::saved_session() const
 
 // ---- Saving ---------------------------------------------------------------------------------------------------------
 
-/// Returns the user's settings as they would be written, but without surfaces: these are many and never change here.
+/// Returns the settings as they would be saved, but without surfaces, which are many and never change here.
 Session Document::edits() const
 {
     Session edits = saved_session();
@@ -323,7 +323,7 @@ std::optional<LocalBall> Document::ball_at(const glm::dvec3& voxel, const std::o
     const double finest = std::min({info.spacing.x, info.spacing.y, info.spacing.z});
     const glm::dvec3 size(info.size), ahead = way ? glm::normalize(*way) : glm::dvec3(0.0);
     if (glm::any(glm::lessThan(voxel, glm::dvec3(0.0))) || glm::any(glm::greaterThan(voxel, size))) return {};
-    // Small sizes are tried first: most structures are thin, and a small size needs few voxels to be read.
+    // Tries small sizes first, since most structures are thin, and a small size needs few voxels to be read.
     for (const double most_voxels : {6.0, 12.0, 24.0}) {  // along the finest axis
         const double most = most_voxels * finest;
         // The centre is within `most` of the voxel, or of a point up to `most` behind it. The radius is at most `most`.

@@ -1,6 +1,6 @@
 #pragma once
-// The open document: session, volume, mask and history, with the objects that show, edit and touch them. Main thread,
-// but a document is read and its files are written on other threads.
+// The open document: session, volume, mask and history, with the objects that show, edit and touch them. Main thread
+// only, except that other threads read the document and write its files.
 //
 // Whether the document is saved is computed, not stored: the session as it would be saved is compared with the session
 // last read or written. The comparison ignores the camera and the probe's position, since looking around changes them.
@@ -26,7 +26,7 @@
 namespace shvr::ui {
 
 struct Document {
-    /// All data that is read before a document can be shown. Created on any thread.
+    /// All data that must be read before a document can be shown. It may be created on any thread.
     struct Read {
         OpenedSession opened;
         std::filesystem::path session_path;
@@ -38,13 +38,13 @@ struct Document {
         std::optional<std::string> session_text{};
         bool is_script = false;  ///< as WorkbenchOptions::is_script
     };
-    /// Reads the saved work of a session. `overridden`: "key=value" settings in which the session differs from its
-    /// file. `hold`: the hold of the document to be replaced, possibly the same document. If another process writes the
-    /// work, or if the session would write outside its folder and `may_write_outside` is not set, the document is
-    /// opened read-only. Fails if it cannot be read. Any thread.
+    /// Reads the saved work of a session. `overridden`: settings, as "key=value", in which the session differs from
+    /// its file. If another process writes the work, or if the session would write outside its folder and
+    /// `may_write_outside` is not set, the document is opened read-only. Fails if the work cannot be read. Any
+    /// thread.
     static Read read(OpenedSession opened, const std::filesystem::path& input,
                      const std::vector<std::string>& overridden, Work::Opening opening, bool may_write_outside);
-    /// Shows the document in the scene, which has its volume. Fails like Scene::show. The mouse moves the probe.
+    /// Shows the document in the scene of its volume; fails like Scene::show. At first, the mouse moves the probe.
     Document(Renderer& renderer, Read read, const View::Options& view_options);
     Document(const Document&) = delete;
 
@@ -61,23 +61,23 @@ struct Document {
     std::vector<SurfaceLook> surfaces;  ///< moved out of the session, since views copy the session every frame
     std::vector<Notice> messages;       ///< notes from opening the work
     std::string holder;                 ///< description of another process that writes the work; empty: none
-    std::string outside;                ///< files that the session would write outside its folder, if the user has not
-                                        ///< agreed to that (annotation_files.h); empty: none
+    std::string outside;                ///< files that the session may not write, since they are outside its folder;
+                                        ///< empty: none, or the user has agreed (annotation_files.h)
     bool drags_node = false;            ///< the selection follows the probe
-    glm::dvec3 drag_from{0.0};          ///< place of the tools when the drag began, in voxels. A single selected node
-                                        ///< moves to the probe; several parts keep their distance from it
+    glm::dvec3 drag_from{0.0};          ///< position of the tools when the drag began, in voxels. If one node is
+                                        ///< selected, it moves to the probe; several parts move by the same offset
 
     // State of the open document that is not part of the work
     std::optional<glm::dvec3> measuring_from;               ///< first end of a measurement that lacks its second end
     std::optional<glm::dvec3> picked_pivot;                 ///< volume space
     std::optional<std::pair<uint32_t, uint32_t>> cut_ends;  ///< nodes that the last deletion separated
-    /// Probe position at the end of the last stroke. Until the probe moves, its ball is not drawn over the fresh paint.
+    /// Position of the probe when the last stroke ended. Until the probe moves, its ball does not hide the new paint.
     std::optional<glm::dvec3> painted_at;
 
     /// Loads everything onto the device again with the current settings. Fails like Renderer::load and
     /// Scene::show_surfaces.
     void load_again(Renderer& renderer);
-    /// Shows the document in the renderer's scene, which is a new scene with the document's volume.
+    /// Shows the document in the renderer's scene, which is new and was made from the document's volume.
     void show_again(Renderer& renderer);
 
     const VolumeInfo& volume() const { return source->info(); }
@@ -86,34 +86,34 @@ struct Document {
     /// structure it touches, a node in its ball, or a centre line that passes through its ball.
     ToolPlace tool_place() const;
     glm::dvec3 tool_voxel() const { return tool_place().point / volume().spacing; }
-    /// Returns where tools would act if the probe were at `point` and touched nothing.
+    /// Returns where tools would act if the probe were at `point` and nothing attracted the tools.
     ToolPlace tool_place_at(const glm::dvec3& point) const;
-    /// Returns the limits of the voxels that can be felt: by default the voxels that the view shows.
+    /// Returns which voxels the hand can feel: by default, those that the view shows.
     FeltLimits felt_limits() const;
     const BrushSettings& brush() const { return session.probe.brush; }
-    /// Chooses missing thresholds for the volume; choose_for_volume() also chooses node size and the slices' contrast.
+    /// Chooses the thresholds if they are missing. choose_for_volume() also chooses node radius and contrast of slices.
     void choose_thresholds(Session& of) const;
     void choose_for_volume(Session& of) const;
     double probe_radius() const { return brush().radius_voxels * volume().spacing.x; }
     ProbeLook probe_look() const;
-    /// Returns a stroke with the current brush at the probe's position, without a path.
+    /// Returns an operation that paints with the current brush at the probe's position; its path is empty.
     PaintOp stroke() const;
     PaintOp dab() const;
-    /// Returns the node to select or to link with: the nearest one within reach that is not selected.
+    /// Returns the node to select or to link with: the nearest one within reach, other than the selected node.
     std::optional<uint32_t> nearby_node() const;
     TraceMarks trace_marks() const;
-    /// Returns the operation that moves the selection if the drag ends now.
+    /// Returns the operation that would move the selection if the drag ended now.
     MoveOp drag_move() const;
     TraceDefaults trace_defaults() const;
-    /// Returns whether the cut can still be mended: both of its ends exist, and no link joins them.
+    /// Returns whether the last cut can be mended: both nodes still exist and are not linked.
     bool is_cut() const;
-    /// Returns the largest ball in the structure above the paint threshold at a point. If `way` is given, the structure
-    /// is that which a line of sight in this direction enters there, at most the probe's radius to the side of the line
-    /// (local_radius.h). Null if it is unknown. Reads 30^3 voxels, up to 124^3 in wide structures.
+    /// Returns the largest ball around a point that fits into the structure above the paint threshold. `way`: direction
+    /// of a line of sight; the structure is then that which the line enters there, at most the probe's radius to its
+    /// side (local_radius.h). Null if unknown. Reads 30^3 voxels, up to 124^3 in wide structures.
     std::optional<LocalBall> ball_at(const glm::dvec3& voxel, const std::optional<glm::dvec3>& way = {}) const;
     /// Returns the bounding box of the probe's ball; it contains at least one voxel of the volume.
     VoxelBox voxels_around_probe() const;
-    /// The view and the probe. They are saved without a message, and do not count as changes of the work.
+    /// The view and the probe, which are saved without a message, and whose changes do not count as unsaved work.
     struct Place {
         Camera camera;
         glm::dvec3 probe_voxel{0.0};
@@ -124,11 +124,11 @@ struct Document {
     Place place() const;
     /// Returns the session as it would be saved, with the current view and probe.
     Session saved_session() const;
-    /// is_saved(): whether closing loses neither work nor settings, except perhaps the view and the probe.
+    /// is_saved(): whether the document could be closed without losing work or settings other than view and probe.
     bool has_session_file() const { return session_text_.has_value(); }
     bool is_saved() const { return work_is_saved() && edits_are_saved(); }
     bool work_is_saved() const { return only_looks() || annotator.work().is_saved(); }
-    /// Returns whether the document is read-only: painting and saving are unavailable. why_only_looks(): the reason.
+    /// Returns whether the document is read-only: nothing can be painted or saved. why_only_looks() returns the reason.
     bool only_looks() const { return annotator.work().only_looks(); }
     std::string why_only_looks() const
     {
@@ -136,33 +136,33 @@ struct Document {
                                : "its session writes outside its folder: " + outside;
     }
     bool is_script() const { return is_script_; }
-    /// Call after any possible change of the session, except of view and probe: clears the cached result of is_saved().
+    /// Call this after changes of the session other than view and probe: clears the cached result of is_saved().
     void note_edit() { edits_are_saved_.reset(); }
-    /// Writes view, probe and similar settings to the journal, if there is one; adds no step to the history.
+    /// Writes view, probe and similar settings to the journal, if there is a journal. The history gets no step.
     void keep_settings();
-    /// Adds all settings changed since the last step to the history, as one step. Call it only while no stroke is
-    /// running. Returns whether there was anything to record.
+    /// Adds all settings that changed since the last step to the history, as one step. Call it only while no stroke is
+    /// running. Returns whether any had changed.
     bool record_settings();
-    /// Applies the settings of the work's history, after undo and redo.
+    /// Applies the settings that the history holds after undo or redo.
     void take_settings();
-    /// A save in the background, of the state at its start. Each file is replaced atomically: first mask, offsets and
-    /// trace, then the session. Files that other programs changed meanwhile are kept under other names.
+    /// A background save of the state at which it began. Each file is replaced atomically: first mask, offsets and
+    /// trace, then the session. If other programs changed a file meanwhile, their version is kept under another name.
     class Saving;
     enum class Parts { all, session, work };
-    /// Fails if nothing can be saved; writes nothing. `end_save` must be called afterwards, whatever the save's result.
+    /// Begins a save without writing anything. Fails if nothing can be saved. Always call `end_save` after the save.
     std::shared_ptr<Saving> begin_save(Parts parts = Parts::all);
-    /// Returns the parts that were written. After a save under another name, the document has that name.
+    /// Ends a save. Returns the parts that were written. After a save under another name, the document has that name.
     Work::Saved end_save(Saving& saving);
-    /// Returns whether only view or probe changed, and the session has a file: saving these needs no message. Merely
-    /// looking at a volume thus creates no file.
+    /// Returns whether nothing but view or probe changed, and the session has a file. Only then is the change saved,
+    /// without a message, so that merely looking at a volume creates no file.
     bool has_view_to_keep() const;
-    /// Returns whether settings must be saved; false while any setting is overridden for this run.
+    /// Returns whether settings need saving. Overridden settings apply to this run only, so they prevent saving.
     bool has_settings_to_save() const { return !edits_are_saved() && overridden_.empty(); }
-    /// Saves under another name. The work continues there with the whole history, and existing files stay unchanged.
-    /// Commands are refused until the save has ended. `path`: the new session's. Fails if a file of that name exists.
+    /// Begins a save under another name. Work continues under that name, with its whole history; existing files stay.
+    /// Commands are refused until the save has ended. `path`: the new session's. Fails if such a file exists.
     std::shared_ptr<Saving> begin_save_as(const std::filesystem::path& path);
     /// Returns a function that writes the current mask, offsets, trace and session to new files, on any thread, and
-    /// returns the session's path. `path`: that path; empty: an unused one next to this session. Fails if it exists.
+    /// returns the session's path. `path`: that path; empty: an unused name next to this session. Fails if it exists.
     std::function<std::filesystem::path()> copier(const std::filesystem::path& path = {}) const;
 
 private:
@@ -182,15 +182,15 @@ private:
     mutable std::optional<bool> edits_are_saved_;  ///< cached answer of edits_are_saved()
 };
 
-/// Returns a session's path: for a session file, the file's own path; for a volume or folder, a path next to it.
+/// Returns the path of the session for an input: a session file's own path or, for a volume or folder, one next to it.
 std::filesystem::path session_path_of(const std::filesystem::path& input);
-/// Returns the file's contents; no value if there is no such file.
+/// Returns the contents of the session file; null if there is no such file.
 std::optional<std::string> text_of_session(const std::filesystem::path& path);
 
 class Document::Saving {
 public:
     Saving(const Saving&) = delete;
-    /// Writes the files. Call once, on any thread. Fails if a file cannot be written.
+    /// Writes the files. Call this once, on any thread. Fails if any file cannot be written.
     void write(ProgressReporter& reporter);
     bool is_written() const { return is_written_; }
     bool is_under_another_name() const { return as_ != nullptr; }
@@ -201,12 +201,12 @@ private:
     void write_session();
     void write_names();
 
-    std::unique_ptr<Work::Saving> work_;  ///< null: the session alone is saved, or
-    std::unique_ptr<Work::SavingAs> as_;  ///< the save is under another name
+    std::unique_ptr<Work::Saving> work_;  ///< null: only the session is saved, or `as_` is set
+    std::unique_ptr<Work::SavingAs> as_;  ///< set if the save is under another name
     std::filesystem::path session_path_;
     std::string text_;                       ///< contents of the session file to write
     std::optional<std::string> text_there_;  ///< contents of the existing file when this process last read or wrote it
-    std::optional<AnnotationNames> names_;   ///< written into the session file if the session is not saved otherwise
+    std::optional<AnnotationNames> names_;   ///< names to write into the session file, if only they are saved
     std::filesystem::path names_path_;
     Session edits_;
     Place place_;

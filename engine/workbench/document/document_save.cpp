@@ -1,4 +1,4 @@
-// Saving a document: in place, in the background, or under other names.
+// Saves a document: in place, in the background, or under other names.
 
 #include <utility>
 
@@ -18,14 +18,14 @@ std::filesystem::path beside(const std::filesystem::path& session_file, const ch
     return std::filesystem::path(session_file).replace_extension(extension);
 }
 
-/// Returns the session renamed to `path`, with its files named after it.
+/// Returns the session for a save as `path`, with its annotation files named after it.
 Session renamed(Session session, const std::filesystem::path& path)
 {
     name_annotation(session, path);
     return session;
 }
 
-/// Fails if the path is not a valid name for a session, or exists already.
+/// Checks a path for a new session. Fails if it is not a valid name for a session, or if it exists already.
 std::filesystem::path new_session_path(const std::filesystem::path& path)
 {
     if (path.extension() != ".json") fail(path.string(), ": is no name for a session; expected one that ends in .json");
@@ -79,8 +79,8 @@ std::shared_ptr<Document::Saving> Document::begin_save(Parts parts)
     return saving;
 }
 
-/// Projects of earlier versions store a byte for every voxel. From their next save on, they store only painted bricks,
-/// in files of new names; the old files stay.
+/// Earlier versions stored a byte for every voxel of a project. When such a project is saved, its painted bricks alone
+/// go into files of new names; the old files stay.
 void Document::name_sparse_files(Parts parts, Saving& saving)
 {
     const bool is_named_here =
@@ -96,16 +96,16 @@ void Document::name_sparse_files(Parts parts, Saving& saving)
     saving.names_path_ = session_path;
 }
 
-/// Writes the names into the current session file, even if another program has just written it; the rest stays.
+/// Writes the names into the current session file, even if another program wrote that file just now. Keeps all else.
 void Document::Saving::write_names()
 {
     const std::optional<std::string> there = text_of_session(names_path_);
-    if (!there) return;  // without a session file, the default names apply, which are those of a new project
+    if (!there) return;  // without a session file, default names apply: the same that a new project uses
     text_ = with_names(*there, *names_, names_path_);
     write_file_atomically(names_path_, std::as_bytes(std::span(text_)));
 }
 
-/// Writes the session. Keeps a file that another program wrote there meanwhile under another name, in the notice.
+/// Writes the session. If another program changed the file meanwhile, keeps that version, and names it in the notice.
 void Document::Saving::write_session()
 {
     std::optional<KeptFile> kept;
@@ -144,7 +144,7 @@ Work::Saved Document::end_save(Saving& saving)
     if (saving.as_ && saving.is_written_) {
         session = renamed(std::move(session), saving.session_path_);
         session_path = saving.session_path_;
-        overridden_.clear();  // the new file also contains settings that were made for this run only
+        overridden_.clear();  // the new file also holds settings that were made for this run only
     }
     if (saving.notice_) saved.notices.push_back(*saving.notice_);
     if (saving.has_session_ || (saving.names_ && !saving.text_.empty())) session_text_ = saving.text_;
@@ -192,8 +192,8 @@ std::shared_ptr<Document::Saving> Document::begin_save_as(const std::filesystem:
     return saving;
 }
 
-/// Only GraphML can store a whole trace, so a trace read from another format is saved to a new file, and the original
-/// file stays unchanged.
+/// Names a new file for a trace that was read from a format other than GraphML, since no other format can store a whole
+/// trace. The original file stays unchanged.
 void Document::name_trace()
 {
     if (annotator.work().trace_is_saved()) return;

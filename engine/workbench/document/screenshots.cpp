@@ -7,7 +7,7 @@
 
 namespace shvr::ui {
 
-/// Returns "scan-view-1.png", with the first unused number. The name of a large picture in progress counts as used.
+/// Returns a path such as "scan-view-1.png" with the first unused number. A large picture in progress uses its number.
 std::filesystem::path Screenshots::free_path(const std::filesystem::path& stem) const
 {
     for (int number = 1;; ++number) {
@@ -32,7 +32,7 @@ Screenshots::Turn Screenshots::advance(Screen& screen, const std::filesystem::pa
         if (written_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return {};
         return {.said = written_.get(), .progress = {}};
     }
-    const bool was_held = screen.is_held();  // a large picture uses the view while it waits for its bricks
+    const bool was_held = screen.is_held();  // a large picture sets the view while it waits for bricks
     screen.hold(false);
     if (!screen.complete() && !was_held) return {};
     if (screen.complete() && std::exchange(is_wanted_, false)) {

@@ -1,7 +1,7 @@
 #pragma once
 // Saves pictures of the view: as shown, once the view is sharp, or larger. A larger picture is rendered part by part
-// while nothing else needs the device, and written at the same time. Compression is slow and runs on its own thread;
-// everything else runs on the main thread.
+// while nothing else needs the device, and written at the same time. Compression is slow and runs on a thread of its
+// own; all other work runs on the main thread.
 
 #include <filesystem>
 #include <functional>
@@ -18,17 +18,17 @@ namespace shvr::ui {
 
 class Screenshots {
 public:
-    /// Requests a picture of the view as shown.
+    /// Requests a picture of the view as shown, to be saved once the view is sharp.
     void take() { is_wanted_ = true; }
-    /// Returns the metadata for the file of a picture.
+    /// Returns the texts to store in the file of a picture.
     using Texts = std::function<PictureTexts(const std::filesystem::path& picture)>;
-    /// `stem`: as for `advance`. `figure`: the drawing over the picture. Fails if the file cannot be written.
+    /// Begins a large picture. `stem`: see advance(). `figure`: drawn over it. Fails if the file cannot be written.
     void take_large(const std::filesystem::path& stem, Renderer& renderer, const Session& session, const Camera& camera,
                     const RenderOptions& options, const Texts& texts, Figure figure);
-    /// Cancels a large picture, for use when its volume changes or closes.
+    /// Cancels a large picture in progress. Call this before its volume changes or closes.
     void drop_large() { large_.reset(); }
     bool has_large() const { return large_ != nullptr; }
-    /// Path of the large picture, and the fraction of the picture that is drawn, 0 ... 1.
+    /// Returns the path of the large picture in progress.
     const std::filesystem::path& large_path() const { return large_path_; }
     double progress() const { return large_ ? large_->progress() : 0.0; }
     bool is_writing() const { return written_.valid(); }
@@ -37,8 +37,8 @@ public:
         std::string said;      ///< message for the user; empty: none
         std::string progress;  ///< likewise, but replaced as it changes
     };
-    /// Call every frame. `stem`: base of the file's name, "scan" for scan-view-1.png. `is_still`: the device is idle.
-    /// `figure`: returns the drawing over a picture as shown. Fails if a picture cannot be made, and then cancels it.
+    /// Call this every frame. `stem`: start of the file's name, "scan" for scan-view-1.png. `is_still`: the device is
+    /// idle. `figure`: returns the drawing over a picture as shown. If a picture cannot be made, cancels it and fails.
     Turn advance(Screen& screen, const std::filesystem::path& stem, bool is_still, const Texts& texts,
                  const std::function<Figure()>& figure);
     /// Waits until the last picture is written.

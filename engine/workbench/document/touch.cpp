@@ -11,7 +11,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// Size of a voxel, as felt by the hand, that the force law's stiffness suits (micro-CT of vascular bundles).
+/// Size of a voxel in the device's workspace, for which the force law's stiffness is tuned (scans of vascular bundles).
 constexpr double VOXEL_M = 0.00025;
 
 uint64_t now_ns()
@@ -101,7 +101,7 @@ Workspace Touch::workspace(const TouchSettings& settings) const
     return {.to_volume = glm::dmat3(finest_spacing() / VOXEL_M), .origin = 0.5 * glm::dvec3(info.size) * info.spacing};
 }
 
-/// Moves the probe, and moves the plane that constrains the probe through its new position.
+/// Moves the probe. If a plane constrains the probe, moves the plane along with it.
 void Touch::place(const glm::dvec3& point)
 {
     if (plane_ != TouchPlane::none) on_plane_ = point;
@@ -147,7 +147,7 @@ void Touch::hold_to_plane(const TouchSettings& settings)
     ++planes_;
 }
 
-/// Sends only settings that the servo does not have yet, so that a recording contains only changes.
+/// Sends settings only if they differ from those last sent, so that a recording contains changes only.
 void Touch::send_settings(const TouchSettings& settings)
 {
     const GuideSettings& guide = settings.guide;
@@ -221,7 +221,7 @@ void Touch::ask()
         relevance_.ask(wanted->place.box, wanted->threshold, now_ns());
     } catch (const DeviceLost&) {
         throw;
-    } catch (const Error&) {  // the device has no room for this cube of voxels
+    } catch (const Error&) {  // the device has no memory for this cube of voxels
         mirror_->decline(*wanted);
     }
 }
@@ -231,8 +231,8 @@ double Touch::relevance_age_ms() const
     return servo_ && state_.relevance_time_ns > 0 ? double(now_ns() - state_.relevance_time_ns) * 1e-6 : 0.0;
 }
 
-/// Moves the probe to the servo's, unless the difference is rounding: a guided probe at rest may oscillate in the last
-/// bits of its place for ever, and pictures and previews, which follow each motion, would never be finished.
+/// Moves the probe to the servo's position, unless they differ by rounding only. A guided probe at rest may oscillate
+/// in the last bits for ever; if the probe followed, pictures and previews would restart each time and never finish.
 void Touch::follow_servo(const glm::dvec3& point)
 {
     constexpr double REST_VOXELS = 1e-6;

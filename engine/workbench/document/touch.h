@@ -24,9 +24,9 @@ namespace shvr::ui {
 
 struct TouchSettings {
     GuideSettings guide;
-    Camera camera;             ///< the view's camera, with which a device's workspace is aligned
-    double view_height = 1.0;  ///< height in physical units, at the target
-    double scale = 1.0;        ///< scale of a device's motion; at 1, its reach is the height of the view
+    Camera camera;             ///< the view's camera, to which the device's workspace is aligned
+    double view_height = 1.0;  ///< height of the view in physical units, at the target
+    double scale = 1.0;        ///< scale of the device's motion; at 1, its range covers the view's height
     bool lets_go = false;
     std::shared_ptr<const VolumeSource> source{};  ///< without offsets
     const DensityField* offsets = nullptr;         ///< offsets and mask are read only if `voxels` changed
@@ -36,45 +36,45 @@ struct TouchSettings {
 
 class Touch {
 public:
-    /// The mouse moves the probe until use() is called.
+    /// Initially, the mouse moves the probe; see use().
     explicit Touch(Renderer& renderer);
-    /// Makes `device` move the probe or, if `moves_view`, the view; null: the mouse moves the probe.
+    /// Makes `device` move the probe or, if `moves_view` is set, the view. Null: the mouse moves the probe again.
     void use(std::shared_ptr<HapticDevice> device, bool moves_view = false);
 
-    /// Moves the probe at once; `point` is in physical units of the volume.
+    /// Moves the probe at once. `point` is in the volume's physical units.
     void place(const glm::dvec3& point);
-    /// Sets the position to which the hand wants to move the probe.
+    /// Sets the position to which the mouse asks to move the probe.
     void wish(const glm::dvec3& point);
-    /// Receives state from the servo and the device, and sends settings, wishes and relevance.
+    /// Takes new state from the servo and the device, and sends them settings, wishes and relevance.
     void advance(const TouchSettings& settings);
     /// Drops pending requests to the graphics device.
     void drop_queries() { relevance_.drop(), asked_.reset(); }
 
-    /// Starts recording with the next frame. Restarts the servo, so that a replay starts in the same state.
+    /// Starts recording with the next frame. Restarts the servo, so that a replay begins in the same state.
     void begin_recording(const std::filesystem::path& path);
     /// Returns null while nothing is recorded.
     const StylusRecorder* recorder() const { return recorder_.get(); }
-    /// Ends the recording and returns it. Fails if nothing was recorded.
+    /// Ends the recording and returns it. Fails if it is empty.
     Trace end_recording();
 
     glm::dvec3 probe() const { return probe_; }
     /// Returns null while no servo moves the probe.
     const ServoState* servo() const { return servo_ ? &state_ : nullptr; }
-    /// Returns the state of the device that moves the view; null if there is no such device.
+    /// Returns the state of the device that moves the view; null if no device does.
     const ServoState* puck() const { return puck_ ? &puck_state_ : nullptr; }
     const TapState& tap() const { return tap_; }
     bool is_realtime() const;
     const std::shared_ptr<HapticDevice>& device() const { return device_; }
     bool is_mouse() const { return !device_ || moves_view_; }
-    /// Returns the device's buttons, as the servo last read them; 0 for the mouse.
+    /// Returns the device's buttons, as last read by the servo; 0 if the mouse moves the probe.
     uint32_t buttons() const;
-    /// Milliseconds from requesting relevance on the GPU until the servo receives it; newest last.
+    /// Returns the times, in milliseconds, from requesting relevance on the GPU until the servo had it; newest last.
     const std::vector<double>& mirror_ms() const { return mirror_ms_; }
     double relevance_age_ms() const;
-    /// Returns why voxels around the probe could not be read, in a sentence; empty: no failure.
+    /// Returns, as a sentence, why voxels around the probe could not be read; empty if they could.
     std::string trouble() const { return mirror_ ? mirror_->trouble() : std::string(); }
     double relevance_gpu_ms() const { return relevance_gpu_ms_; }
-    /// Returns the last state of the most recent servo that moved the probe, for reports.
+    /// Returns the last state of the last servo that moved the probe, even if it no longer runs; for reports.
     const ServoState& last_state() const { return state_; }
 
 private:
@@ -104,13 +104,13 @@ private:
     SimulatedDevice* mouse_ = nullptr;              ///< the servo's device while the mouse moves the probe; else null
     std::unique_ptr<StylusRecorder> recorder_;
     uint32_t recordings_ = 0;
-    bool awaits_relevance_ = false;  ///< in a recording, guidance starts once relevance has arrived
+    bool awaits_relevance_ = false;  ///< while recording starts, guidance waits for the first relevance
     bool was_assisting_ = false;
     uint32_t resets_ = 0;
     uint32_t jumps_ = 0;
     std::optional<TapOrder> sent_;
     TouchPlane plane_ = TouchPlane::none;
-    glm::dvec3 on_plane_{0.0};  ///< a point on the plane that constrains the probe, in physical units
+    glm::dvec3 on_plane_{0.0};  ///< a point in the plane that constrains the probe, in physical units
     uint32_t planes_ = 0;
     glm::dvec3 wish_{0.0}, probe_{0.0};
     ServoState state_, puck_state_;

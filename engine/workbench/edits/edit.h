@@ -1,5 +1,5 @@
 #pragma once
-// Creates actions that change settings. Pure; any thread.
+// Makes actions that change settings, from functions that edit a session. Pure; any thread.
 
 #include "engine/session/session_patch.h"
 #include "engine/workbench/actions/action.h"
@@ -7,7 +7,7 @@
 
 namespace shvr::ui {
 
-/// Returns the action that changes the settings as `edit` does.
+/// Returns the action that makes the same changes of settings as `edit` makes in a copy of the session.
 template <class Edit>
 Set edited(const Session& session, const Edit& edit)
 {
@@ -17,7 +17,7 @@ Set edited(const Session& session, const Edit& edit)
     return {patch.empty() ? "{}" : patch};
 }
 
-/// Adds an action that changes the settings as `edit(Session&)` does, if it changes anything.
+/// Appends the action that makes the same changes of settings as `edit(Session&)`, if there are any changes.
 template <class Edit>
 void set(Actions& actions, const Model& model, const Edit& edit)
 {

@@ -26,7 +26,7 @@ private:
     int64_t count_ = 0;
 };
 
-/// Returns factor * max(mean radius, half a voxel), in voxels along x; uses the probe's radius if there is no mean.
+/// Returns factor * max(mean radius, half a voxel), in voxels along x. Without a mean, uses the probe's radius.
 double scaled_radius(const Model& model, const Mean& mean, double factor)
 {
     const double probe = model.brush().radius_voxels * model.volume.spacing.x;

@@ -1,6 +1,6 @@
 #pragma once
-// Converts the keys, menus and buttons of tracing to operations; scripts use the same operations. Pure; main thread
-// only, while the model exists.
+// Makes the operations on the trace that keys, menus and buttons stand for; scripts use the same operations. Pure; main
+// thread only, while the model exists.
 
 #include "engine/workbench/actions/action.h"
 #include "engine/workbench/models/model.h"
@@ -8,25 +8,25 @@
 
 namespace shvr::ui {
 
-/// Returns the operation that adds a node at the probe, with its group and default radius, linked to the selected node.
+/// Returns the operation that adds a node at the probe, in the active group and linked with the selected node.
 NodeOp node_at_probe(const Model& model);
-/// Returns the operation of node_at_probe(), with two exceptions. If tools act at an existing node, links the selected
-/// node with it or, if these are linked already, selects it. On a centre line, adds a node that divides the line.
+/// Like node_at_probe(), unless part of the trace attracts the tools. If an existing node does, links the selected node
+/// with it or, if they are linked already, selects it. If a centre line does, adds a node that divides the line.
 Action node_or_link_at_probe(const Model& model);
-/// Returns the operation that replaces adding a node if part of the trace attracts the tools; null if nothing does.
+/// Returns the operation that replaces adding a node where part of the trace attracts the tools; null if none does.
 std::optional<Action> trace_op_at(const ToolPlace& place, const TraceGraph& trace, const glm::dvec3& spacing);
-/// Selects the nearest node or, if that node is selected already, its nearest internode.
+/// Returns the selection of the nearest node or, if that node is selected already, of its nearest internode.
 SelectOp nearest_selection(const Model& model);
-/// Links the selected node with the nearest other node.
+/// Returns the operation that links the selected node with the node nearest to it.
 LinkOp link_with_nearest(const Model& model);
 
-/// Moves the selected node to the probe. If several parts are selected, moves all so that the nearest node gets there.
+/// Moves the selected node to the probe. If several parts are selected, moves all by the offset of the nearest node.
 MoveOp move_to_probe(const Model& model);
 
-/// Scales the radii of the selected nodes or, if none is selected, of all internodes of the chosen group; these
-/// internodes then no longer taper.
+/// Gives the selected nodes their mean radius times `factor`. If no node is selected, gives it to all internodes of the
+/// selected internode's group or else of the active group; these internodes then no longer taper.
 RadiusOp scaled(const Model& model, double factor);
-/// Gives all nodes of the chosen group the same radius: their mean, times `factor`.
+/// Gives all nodes of the active group the same radius: the mean of their radii, times `factor`.
 RadiusOp scaled_nodes_of_group(const Model& model, double factor);
 
 /// Returns the centre of the selection's bounding box, in volume space; no value if nothing is selected.

@@ -1,6 +1,6 @@
 #pragma once
-// Texts of messages for the user, and a report to paste into an issue. Pure, except for the clock's time zone; main
-// thread only.
+// Texts about messages to the user, and a report to paste into an issue. Pure except for the time zone, which the clock
+// has; main thread only.
 
 #include <string>
 
@@ -8,13 +8,13 @@
 
 namespace shvr::ui {
 
-/// Returns the word of a weight, such as "error"; "" for Weight::done.
+/// Returns the word for a weight, such as "error"; an empty text for Weight::done.
 const char* word_of(Weight weight);
 /// Returns "14:03:59", in the local time zone.
 std::string time_in_words(const Message& message);
-/// Returns "1 error, 2 warnings" for unread messages; empty if there are none.
+/// Returns how many messages are unread, as "1 error, 2 warnings"; empty if none is.
 std::string unread_in_words(const MessageLog& messages);
-/// Returns the program, device, session, last actions and last messages, as Markdown.
+/// Returns a report in Markdown: program, device, session, last actions and last messages.
 std::string bug_report(const Model& model);
 
 }  // namespace shvr::ui

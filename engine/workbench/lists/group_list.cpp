@@ -38,7 +38,7 @@ std::vector<GroupRow> listed_groups(const Groups& groups, const std::array<int64
     for (size_t group = 1; group < voxels.size(); ++group)
         if (voxels[group] > 0) listed.insert(uint8_t(group));
     std::vector<GroupRow> rows;
-    // Adds the group if it or a group below it matches. Returns whether it was added.
+    // Adds a row for the group if the group or one of its descendants matches the search. Returns whether it did.
     const auto add = [&](const auto& self, uint8_t group, int depth) -> bool {
         const size_t at = rows.size();
         rows.push_back({group, depth, is_found(groups, group, search)});

@@ -9,11 +9,11 @@
 
 namespace shvr::ui {
 
-/// Row N is the state after N steps: row 0 is the start, row `rows - 1` the newest state.
+/// Row N is the state after N steps: row 0 is the initial state, row `rows - 1` the newest state.
 struct HistoryList {
     const History* history = nullptr;
-    size_t done = 0;        ///< number of steps done, not counting changed settings that are not a step yet
-    bool is_ahead = false;  ///< a changed setting is not a step yet: an additional last row shows it as the present
+    size_t done = 0;        ///< number of steps done; changed settings that are not a step yet do not count
+    bool is_ahead = false;  ///< true: changed settings are not a step yet; one more row, the last, shows them
 
     size_t rows() const;
     size_t present() const { return done + is_ahead; }
@@ -21,12 +21,12 @@ struct HistoryList {
 };
 HistoryList history_list(const Model& model);
 
-/// Returns the undo or redo, of one or more steps, that leads to a row; no value if the row is the present one.
+/// Returns the action that undoes or redoes as many steps as lead to a row; null if that row is the present state.
 std::optional<Action> go_to_row(const HistoryList& list, size_t row);
 
 /// Returns the bounding box, in voxels, of the changes in the step that leads to that row: paint, offsets, nodes and
-/// ends of internodes, without radii. No value if the step has no position, like a change of settings. Fails if the
-/// journal cannot be read.
+/// ends of internodes, without their radii. Null if the step has no position, such as a change of settings. Fails if
+/// the journal cannot be read.
 struct PlaceBox {
     glm::dvec3 lower{0.0}, upper{0.0};  ///< in voxels
     glm::dvec3 middle() const { return (lower + upper) * 0.5; }

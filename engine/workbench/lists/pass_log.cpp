@@ -26,7 +26,7 @@ void fields(Fields& f, SavedPass& pass)
     f.number("longest_ms", pass.longest_ms, MILLISECONDS, {});
 }
 
-/// Reads a pass from the output of `shvr profile`; its time in PassTime is the time per frame.
+/// Reads a pass from the output of `shvr profile`, which states times per frame.
 View::PassTime of_profile(const JsonNode& node)
 {
     View::PassTime pass{.name = node["name"].text(), .runs = 1};
@@ -74,7 +74,7 @@ std::string change_in_words(const View::PassTime& pass, const PassRun& run)
 {
     const View::PassTime* const was = run.find(pass.name);
     if (!was) return {};
-    // Times near the resolution of the clock are compared by their difference, since their ratio is unreliable.
+    // Times near the clock's resolution have no reliable ratio, so they are not compared.
     constexpr double MIN_MS = 0.05;
     if (was->total_ms < MIN_MS || pass.total_ms < MIN_MS) return pass.total_ms == was->total_ms ? "same" : "tiny";
     char text[32];
@@ -88,7 +88,7 @@ void PassLog::note(double now_s, const std::vector<View::PassTime>& passes)
     Frame frame{.at_s = now_s, .added_ms = {}};
     for (const View::PassTime& pass : passes) {
         const auto was = std::ranges::find(passes_, pass.name, &View::PassTime::name);
-        // Fewer runs than before mean that another picture has begun.
+        // If a pass ran fewer times than before, its counters were reset, since another picture has begun.
         const bool goes_on = was != passes_.end() && was->runs <= pass.runs && was->total_ms <= pass.total_ms;
         frame.added_ms[pass.name] = pass.total_ms - (goes_on ? was->total_ms : 0.0);
     }

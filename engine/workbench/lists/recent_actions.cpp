@@ -7,7 +7,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// Returns whether the action follows the mouse or a held key.
+/// Returns whether mouse motion or a held key repeats the action many times a second.
 bool comes_in_runs(const Action& action)
 {
     return action.is<Orbit>() || action.is<Roll>() || action.is<Move>() || action.is<Zoom>() ||

@@ -1,7 +1,7 @@
 #pragma once
-// The last actions, for bug reports. Actions that follow the mouse arrive many times a second, so a run of actions of
-// one kind is one entry, which stores the last of them. Actions are stored unformatted and formatted only on request,
-// so recording an action costs only its copy. Main thread only.
+// The last actions, for bug reports. Actions that follow the mouse arrive many times a second, so successive actions of
+// one kind become one entry, which stores the last of them. Entries store actions as structs, and turn them into text
+// only on request, so recording an action costs no more than a copy. Main thread only.
 
 #include <cstdint>
 #include <deque>
@@ -17,10 +17,10 @@ public:
     static constexpr size_t MAX_ENTRIES = 50;
 
     void begin(const Action& action);
-    /// Marks the most recently begun action as carried out.
+    /// Notes that the newest action was carried out; otherwise, the report says that it was refused.
     void note_done() { entries_.back().is_done = true; }
-    /// Returns lines that replay the actions, oldest first (action_rows.h). A comment after " # " states that the
-    /// action was refused, or how many actions its run had.
+    /// Returns lines that replay the actions, oldest first (action_rows.h). After " # ", a comment states that an
+    /// action was refused, or how many actions an entry stands for.
     std::vector<std::string> lines() const;
 
 private:

@@ -1,6 +1,6 @@
 #pragma once
-// A trace as two lists: its segments and its nodes. They are built once for each state of the trace, so that the cost
-// of scrolling depends only on the visible rows. Pure; main thread only.
+// A trace as two lists, of its segments and of its nodes. The lists are rebuilt only when the trace changes, so the
+// cost of scrolling depends only on the visible rows. Pure; main thread only.
 
 #include <string>
 #include <vector>
@@ -11,7 +11,7 @@
 namespace shvr::ui {
 
 struct SegmentRow {
-    uint32_t internode = 0;        ///< smallest internode number in the segment; identifies the segment
+    uint32_t internode = 0;        ///< smallest number of the segment's internodes, which identifies the segment
     uint32_t first = 0, last = 0;  ///< nodes at its ends
     size_t nodes = 0;
     uint8_t group = 0;       ///< group of most of its length
@@ -30,7 +30,7 @@ enum class TraceOrder { number, group, nodes, length };
 
 class TraceList {
 public:
-    /// Rebuilds the rows unless trace and order are unchanged since the last call. Returns whether it rebuilt them.
+    /// Rebuilds the rows if the trace or the order changed since the last call. Returns whether it did.
     bool update(const TraceGraph& trace, TraceOrder order, bool is_descending);
     const std::vector<SegmentRow>& segments() const { return segments_; }
     /// Nodes in the order of their numbers; `order` applies to segments only.
@@ -46,13 +46,13 @@ private:
     std::vector<NodeRow> nodes_;
 };
 
-/// Selects the segment and looks at its middle; `spacing`: the volume's spacing.
+/// Returns actions that select the segment and point the camera at its middle.
 Actions select_segment(const SegmentRow& row);
 Action go_to(const SegmentRow& row, const glm::dvec3& spacing);
 /// Does the same for a node.
 Actions select_node(const NodeRow& row);
 Action go_to(const NodeRow& row, const TraceGraph& trace, const glm::dvec3& spacing);
-/// Returns whether the selection is the segment of that row, or part of the segment.
+/// Returns whether the row's segment is selected, as a whole or in part.
 bool is_selected(const SegmentRow& row, const TraceSelection& selection);
 
 }  // namespace shvr::ui

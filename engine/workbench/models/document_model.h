@@ -1,5 +1,5 @@
 #pragma once
-// Read-only view of the open document, or of an empty session if no document is open.
+// Read-only view of the open document; while no document is open, of an empty session.
 
 #include <filesystem>
 #include <span>
@@ -19,10 +19,10 @@ struct DocumentModel {
     const VolumeStatistics& statistics;
     const Camera& camera;
     const std::filesystem::path& session_path;
-    bool has_session_file = false;  ///< false: the document is a bare scan that was never saved
-    std::string_view holder{};      ///< another process that writes the project: this window is then read-only
-    std::string_view outside{};     ///< files that the session would write outside its folder, if the user has not
-                                    ///< agreed: this window is then read-only
+    bool has_session_file = false;  ///< false: no session file exists; the document is a scan that was never saved
+    std::string_view holder{};      ///< another process that writes the project, so that this window is read-only
+    std::string_view outside{};     ///< files that the session may not write, since they are outside its folder:
+                                    ///< unless this is empty, the window is read-only
     const MessageLog& messages;
 };
 

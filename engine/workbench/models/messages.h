@@ -11,7 +11,7 @@
 
 namespace shvr::ui {
 
-/// Returns an exception's message as it is shown to the user.
+/// Returns the message of an exception in the form that is shown to the user.
 inline std::string told_of(const std::exception& error)
 {
     return dynamic_cast<const std::bad_alloc*>(&error) ? "host memory is exhausted" : error.what();
@@ -42,7 +42,7 @@ public:
         ++unread_[size_t(weight)];
         if (messages_.size() > MAX_MESSAGES) messages_.pop_front();
     }
-    /// Replaces the text of the last message, for example to show progress; adds a message if there is none.
+    /// Replaces the text of the last message, for example to update progress. If there is no message, adds one.
     void amend(double time_s, std::string text)
     {
         if (messages_.empty()) return add(time_s, Weight::done, std::move(text));
@@ -57,15 +57,15 @@ public:
         return messages_.empty() ? NOTHING : messages_.back().text;
     }
     uint64_t count() const { return count_; }
-    /// Returns the first message of that weight with a number above `count`, among messages that were not dropped; null
-    /// if there is none.
+    /// Returns the first message of that weight whose number is above `count`; null if there is none. Dropped messages
+    /// are not found.
     const Message* first_after(uint64_t count, Weight weight) const
     {
         for (const Message& message : messages_)
             if (message.number > count && message.weight == weight) return &message;
         return nullptr;
     }
-    /// Returns the number of messages of that weight since `note_read`, including dropped ones.
+    /// Returns how many messages of that weight came since `note_read`, including dropped ones.
     uint64_t unread(Weight weight) const { return unread_[size_t(weight)]; }
     void note_read() { unread_ = {}; }
 
@@ -75,8 +75,8 @@ private:
     std::array<uint64_t, 3> unread_{};
 };
 
-/// Shortens paths to their last names, for narrow places: "Saved .../leaf.json". A path starts at the start of a word.
-/// It ends before " and ", before punctuation followed by a space, or at the end of the text.
+/// Shortens paths to their last component, for narrow places: "Saved .../leaf.json". A path starts at the start of a
+/// word. It ends before " and ", before punctuation followed by a space, or at the end of the text.
 std::string without_folders(const std::string& text);
 
 }  // namespace shvr::ui

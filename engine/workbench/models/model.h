@@ -1,6 +1,6 @@
 #pragma once
 // A read-only view of the workbench, for panels, keys and conditions of actions; each service contributes one part. It
-// consists of references and a few numbers, so it is cheap to construct. Valid until the next action or main-loop step.
+// consists of references and a few numbers, so it is cheap to make. Valid until the next action or main-loop step.
 
 #include "engine/workbench/models/document_model.h"
 #include "engine/workbench/models/opening_model.h"
@@ -33,7 +33,7 @@ struct Model : DocumentModel,
     const std::string& status() const { return messages.last(); }
 };
 
-/// Returns the save state as text for the status bar: a scan that was never saved is not "saved".
+/// Returns the words of the status bar for the save state; a scan that was never saved does not count as "saved".
 inline const char* saved_in_words(const Model& model)
 {
     if (model.is_saving) return "saving";

@@ -15,22 +15,22 @@
 
 namespace shvr::ui {
 
-/// A file that the open dialog describes (LookAtFile).
+/// Data about a file that the user considers opening, for the open dialog (LookAtFile).
 struct Candidate {
     std::filesystem::path path;
     std::string settings;  ///< settings used to inspect it
     bool is_being_read = true;
-    std::string failure;            ///< reason why the file cannot be opened; empty: no reason is known
-    std::vector<Choice> choices{};  ///< alternatives to choose from, if the file cannot be opened without a choice
+    std::string failure;            ///< why the file cannot be opened; empty: it can, as far as is known
+    std::vector<Choice> choices{};  ///< if the user must choose how to read the file: the alternatives
     std::string kind;               ///< "Volume", "Session", "Project", "Picture of a session"
     bool is_project = false;        ///< the file needs no import
-    VolumeInfo volume{};            ///< this and the members below are valid only if `failure` is empty
+    VolumeInfo volume{};            ///< this and all members below are valid only if `failure` is empty
     int levels = 1;
     std::string memory{};  ///< required host and device memory
     std::vector<std::string> warnings{};
 };
 
-/// A file that could be a scan or annotation of the open scan; the user decides which (TakeFile).
+/// A file that may be either a scan or annotation of the open scan, so that the user must decide (TakeFile).
 struct UnclearFile {
     std::filesystem::path path;
     std::string beside{};     ///< as in TakeFile
@@ -39,24 +39,24 @@ struct UnclearFile {
     bool may_be_offsets = true;
 };
 
-/// Annotation or a transfer function to be loaded, and what that would change (PreviewLoad).
+/// Annotation or a transfer function that was read but not loaded, and the changes it would make (PreviewLoad).
 struct LoadPreview {
     std::filesystem::path path;
     std::optional<Part> part{};  ///< null: a transfer function
     std::string changes;         ///< a sentence: "1200 voxels would change their group"
     bool changes_anything = true;
-    std::vector<MaskPreview::Group> groups{};  ///< those that gain or lose voxels, if it is a mask
-    std::vector<std::string> notes{};          ///< how the file was read, and what of it is left out
+    std::vector<MaskPreview::Group> groups{};  ///< if the file is a mask: the groups that gain or lose voxels
+    std::vector<std::string> notes{};          ///< how the file was read, and which parts of it were ignored
 };
 
 /// Made by the opener.
 struct OpeningModel {
-    std::span<const std::string> recovered{};  ///< notes at opening on recovered or set-aside work, until dismissed
+    std::span<const std::string> recovered{};  ///< notes about recovered or set-aside work, until they are dismissed
     std::string_view opening{};                ///< name of the file being opened; empty: none
-    /// Why the last Open failed, and the path of its file; empty: it did not fail.
+    /// Reason why the last attempt to open a file failed, and the file's path; empty: it did not fail.
     std::string_view open_failure{};
     const std::filesystem::path* failed_path = nullptr;
-    /// Why the open file looks like a label image instead of a scan; empty: it does not, or the notice was dismissed.
+    /// Why the open file seems to be a label image, not a scan; empty: it does not, or the user dismissed the notice.
     std::string_view looks_like_labels{};
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 // The user's choices for all scans: keys, theme and sizes, panel layout, and recently opened paths. Plain data; any
-// thread. bindings/preferences_file.h reads and writes it.
+// thread. bindings/preferences_file.h reads and writes them.
 
 #include <filesystem>
 #include <map>
@@ -21,7 +21,7 @@ constexpr std::span<const Spelling<KeySet>> spellings_of(KeySet)
     return KEY_SETS;
 }
 
-/// Chords that replace the defaults, by shortcut id; an empty list leaves the shortcut without a key.
+/// Chords that replace the defaults, by id of the shortcut. With an empty list, the shortcut has no key.
 using KeyChanges = std::map<std::string, std::vector<std::string>>;
 
 /// Selects whether a device that reports speeds (a SpaceMouse) moves the view or the probe.
@@ -32,7 +32,7 @@ constexpr std::span<const Spelling<PuckMoves>> spellings_of(PuckMoves)
     return PUCK_MOVES;
 }
 
-/// A haptic device, identified by data that do not depend on its USB port. Empty name: the first usable device.
+/// The haptic device to use, identified by data that do not depend on its USB port. Empty name: the first usable one.
 struct ChosenDevice {
     std::string name, serial;
     bool operator==(const ChosenDevice&) const = default;
@@ -44,18 +44,18 @@ struct Preferences {
                             MIN_BUDGET_MIB = 16.0, MAX_BUDGET_MIB = 1048576.0;
 
     KeySet key_set = KeySet::modern;
-    KeyChanges keys;                            ///< changes to the chords of the set
-    KeyChanges unusable_keys;                   ///< changes with an unknown shortcut or chord; the file keeps them
+    KeyChanges keys;                            ///< chords that differ from those of the key set
+    KeyChanges unusable_keys;                   ///< changes with unknown shortcuts or chords, which the file keeps
     std::vector<std::filesystem::path> recent;  ///< newest first, each once
     Theme theme = Theme::dark;
     double font_pixels = 14.0;    ///< at a scale of 1
-    std::optional<double> scale;  ///< scale of the whole interface; none: the screen's scale
-    /// Limits of device and host memory, effective from the next start; none: all that is available.
+    std::optional<double> scale;  ///< scale of the whole interface; none: the scale of the screen
+    /// Limits of device and host memory, which apply from the next start; none: uses what is available.
     std::optional<double> budget_device_mib, budget_host_mib;
     WindowLayout layout;
     ChosenDevice device;
     PuckMoves puck = PuckMoves::view;
-    int hints_seen = 0;  ///< number of first hints that were dismissed, 0 ... 3 (bindings/hints.h)
+    int hints_seen = 0;  ///< number of first hints that the user dismissed, 0 ... 3 (bindings/hints.h)
 
     void note_opened(const std::filesystem::path& path);
     bool operator==(const Preferences&) const = default;

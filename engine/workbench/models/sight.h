@@ -1,5 +1,5 @@
 #pragma once
-// Values read at the probe and at the pointer: plain data of the model. Any thread.
+// Values at the probe and at the mouse pointer, as plain data of the model. Any thread.
 
 #include <optional>
 
@@ -16,14 +16,14 @@ struct Pointer {
 
 /// Values of the volume and the annotation at a point.
 struct Reading {
-    glm::dvec3 voxel{0.0};            ///< position of the probe; over a slice, position of the pointer
-    bool is_inside = false;           ///< inside the volume; if false, the next three members are unknown
-    std::optional<double> intensity;  ///< in the file's units; null: it cannot be read, or has not been read yet
+    glm::dvec3 voxel{0.0};            ///< where values are read: at the probe or, if the mouse is over a slice, there
+    bool is_inside = false;           ///< whether the voxel is in the volume; if not, the next three members are unset
+    std::optional<double> intensity;  ///< in the file's units; null: could not be read, or is not read yet
     double offset = 0.0;              ///< density offset added by painting
     uint8_t group = 0;
-    /// Depth of the probe in the first pane: physical units along the view, from where the drawn volume begins.
+    /// Depth of the probe in the first pane, in physical units along the view, from the start of the drawn volume.
     double depth = 0.0;
-    /// Fraction of the voxels in the probe's ball whose value is at or above the threshold; null: unknown.
+    /// Fraction of the voxels in the probe's ball whose values reach the threshold; null: unknown.
     std::optional<double> relevant_share;
 };
 

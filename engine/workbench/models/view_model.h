@@ -18,25 +18,25 @@ struct HandView;
 struct ViewModel {
     const std::vector<Screen::Part>& panes;
     const Screen* screen = nullptr;            ///< null where nothing is open
-    std::optional<Pointer> pointer{};          ///< the mouse, while it is over the picture
-    std::optional<glm::dvec3> picked_pivot{};  ///< pivot picked by the user, in volume space; the session may select it
+    std::optional<Pointer> pointer{};          ///< position of the mouse while it is over the picture; otherwise null
+    std::optional<glm::dvec3> picked_pivot{};  ///< pivot picked by the user, in volume space; used if settings say so
     bool view_is_complete = true;
-    bool view_is_limited = false;  ///< drawn coarser than the screen, because the visible bricks exceed the budget
+    bool view_is_limited = false;  ///< drawn coarser than the screen: the visible bricks exceed the memory budget
 };
 
 /// Made by the reader. Lengths in voxels.
 struct ReadingModel {
     Reading reading{};
     std::span<const Measurement> measurements{};
-    std::optional<glm::dvec3> measuring_from{};  ///< first end of a measurement that lacks its second end
+    std::optional<glm::dvec3> measuring_from{};  ///< first end of a measurement whose second end is not set yet
     std::optional<glm::dvec3> measuring_to{};    ///< candidate for its second end
 };
 
 /// Made by the prober.
 struct ProbeModel {
     glm::dvec3 probe_voxel{0.0};
-    glm::dvec3 tool_voxel{0.0};              ///< position at which tools act: the probe, or the structure that it
-                                             ///< touches (FeelSettings)
+    glm::dvec3 tool_voxel{0.0};              ///< where tools act: at the probe, or at a structure that attracts
+                                             ///< them (FeelSettings)
     std::optional<uint32_t> tool_node;       ///< node that tools act at
     std::optional<uint32_t> tool_internode;  ///< internode that tools act on
 };
@@ -44,8 +44,8 @@ struct ProbeModel {
 /// Made by the hand.
 struct TouchedModel {
     const ServoState* servo = nullptr;  ///< null while no servo runs
-    const HandView* hand = nullptr;     ///< devices and state of the hand; null while nothing is open
-    double relevance_age_ms = 0.0;      ///< age of the relevance patch that the servo uses; 0 without assistance
+    const HandView* hand = nullptr;     ///< the haptic device and its state; null while nothing is open
+    double relevance_age_ms = 0.0;      ///< age of the relevance data that the servo uses; 0 without assistance
 };
 
 }  // namespace shvr::ui

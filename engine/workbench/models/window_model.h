@@ -20,7 +20,7 @@ struct Preferences;
 struct PreferenceModel {
     const Keymap& keymap;
     const Preferences& preferences;
-    std::string_view awaits_key{};  ///< id of the shortcut that the next key is bound to; empty: none
+    std::string_view awaits_key{};  ///< id of the shortcut to which the next pressed key will be bound; empty: none
 };
 
 /// Made by the shelf of presets.
@@ -41,9 +41,9 @@ struct WindowModel {
 
 /// Made by the workbench itself, for reports.
 struct ReportModel {
-    const RecentActions* recent = nullptr;  ///< the last actions; null: none are recorded
+    const RecentActions* recent = nullptr;  ///< the last actions; null: actions are not recorded
     std::string_view version{};             ///< the program's version
-    double ui_frame_ms = 0.0;               ///< median over the last frames, set by the window
+    double ui_frame_ms = 0.0;               ///< median over the last frames; the window sets it
 };
 
 }  // namespace shvr::ui

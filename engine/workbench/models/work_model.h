@@ -11,9 +11,9 @@ namespace shvr::ui {
 
 /// Made by the painter.
 struct PaintModel {
-    bool is_painting = false;     ///< a stroke is open, or has ended but is not fully painted yet
+    bool is_painting = false;     ///< a stroke is in progress, or has ended but is not fully painted yet
     bool stroke_is_open = false;  ///< the hand is down
-    /// Number of voxels that painting would change now; no value if no preview is shown or the preview is pending.
+    /// Number of voxels that painting would change now; null if no preview is shown or its result is not known yet.
     std::optional<int64_t> previewed_voxels;
     std::array<int64_t, 256> voxels_by_group{};
 };
@@ -23,21 +23,21 @@ struct TraceModel {
     const TraceGraph& trace;
     std::optional<uint32_t> nearby_node;  ///< near the probe, and not selected
     bool drags_node = false;
-    bool is_cut = false;  ///< the last deletion cut the trace in two, and the cut is not mended yet
+    bool is_cut = false;  ///< the last deletion cut the trace in two, and the two ends are not linked again yet
 };
 
 /// Made by the settings' editor.
 struct HistoryModel {
     const History* history = nullptr;   ///< null where nothing is open
-    size_t undoable = 0, redoable = 0;  ///< a setting that is not a step of the history yet counts as undoable
+    size_t undoable = 0, redoable = 0;  ///< a changed setting that is not yet a step of the history counts as undoable
 };
 
 /// Made by the saver.
 struct SaveModel {
     bool is_saved = true;
-    bool is_saving = false;               ///< files are being written, without the changes made since then
-    bool is_saving_as = false;            ///< saving under another name is under way: commands are refused
-    std::span<const Dispute> disputes{};  ///< saved files that other processes changed; empty: no choice is needed
+    bool is_saving = false;               ///< a save is in progress; changes made since it began are not part of it
+    bool is_saving_as = false;            ///< the save is under another name: until it ends, commands are refused
+    std::span<const Dispute> disputes{};  ///< saved files that others changed, for the user to choose; empty: none
 };
 
 }  // namespace shvr::ui
