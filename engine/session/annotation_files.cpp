@@ -42,7 +42,7 @@ fs::path with_suffix(fs::path stem, const char* suffix)
     return stem += suffix;
 }
 
-/// Returns a file next to a mask; for IMAGE/labels, which may contain only label images, a file in the folder shvr.
+/// Returns a file next to a mask, or in IMAGE/shvr for a mask in IMAGE/labels, which may only contain label images.
 fs::path beside(const fs::path& mask, const char* suffix)
 {
     const fs::path stem = stem_of(mask), folder = stem.parent_path();
@@ -50,7 +50,7 @@ fs::path beside(const fs::path& mask, const char* suffix)
     return with_suffix(is_among_labels ? folder.parent_path() / "shvr" / stem.filename() : stem, suffix);
 }
 
-/// Returns the first of "paint", "paint-2" and so on that is free with this suffix.
+/// Returns the first of "paint", "paint-2" and so on for which no file with this suffix exists.
 fs::path free_name(const fs::path& stem, const char* suffix)
 {
     fs::path name = with_suffix(stem, suffix);
@@ -64,7 +64,7 @@ bool is_within(const fs::path& path, const fs::path& folder)
     return !relative.empty() && *relative.begin() != "..";
 }
 
-/// Returns the folder that a session owns: the project's folder, or else the session file's; does not resolve links.
+/// Returns the folder that belongs to a session: the project's folder, or else the session file's. Keeps links.
 fs::path folder_of_session(const fs::path& session_file)
 {
     const fs::path folder = fs::absolute(session_file).lexically_normal().parent_path();
@@ -72,7 +72,7 @@ fs::path folder_of_session(const fs::path& session_file)
     return is_project ? folder.parent_path() : folder;
 }
 
-/// Returns the first symbolic link on the way from the folder to a path inside it; empty if there is none.
+/// Returns the first symbolic link among `path` and its parents inside the folder; empty if there is none.
 fs::path link_on_way(const fs::path& path, const fs::path& folder)
 {
     const fs::path whole = fs::absolute(path).lexically_normal();
@@ -109,7 +109,7 @@ std::string files_outside(const Session& session, const fs::path& session_file,
         words += (words.empty() ? "" : ", ") + what + ", which is " + target.string();
         if (!link.empty()) words += ", since " + link.string() + " is a link";
     };
-    // Files that the session does not name lie next to the mask.
+    // With `mask` set by the user, files whose names derive from the mask's are the user's choice, too.
     const bool is_mask_set = is_set(settings, "mask");
     const auto goes_with_mask = [&](const fs::path& path) {
         return is_mask_set && (path == trace_beside(session.mask_path) || path == offsets_beside(session.mask_path));

@@ -1,7 +1,7 @@
 #pragma once
-// Keys of JSON objects. Each key is defined once, with its name, the value it stands for, its range, unit and meaning.
-// A function `fields(Fields&, Value&)` visits keys in the order in which they are written; reading, writing and the
-// tables of documentation are visitors:
+// Keys of JSON objects. Each key is defined once: name, value, range, unit and meaning. A function
+// `fields(Fields&, Value&)` visits the keys in the order in which they are written. Reading, writing and the tables of
+// the documentation are visitors:
 //
 //   void fields(Fields& f, Light& light)
 //   {
@@ -26,15 +26,15 @@ namespace shvr {
 
 /// The documentation of a key.
 struct About {
-    const char* meaning = "";   ///< one line; empty for sections that need none
+    const char* meaning = "";   ///< one line; empty for sections that need no explanation
     const char* unit = "";      ///< printed before the range
     const char* allowed = "";   ///< printed instead of unit and range
-    const char* standard = "";  ///< the default, if it is not a plain value
+    const char* standard = "";  ///< text for the default if this is not a plain value
     bool is_required = false;
 };
 
-/// Visits values by their keys. Unset optional values and empty texts and paths are not written. If a key is missing
-/// from a file, its value stays unchanged.
+/// Visits the values of an object by their keys. Unset optional values, empty texts and empty paths are not written.
+/// Reading leaves a value unchanged if its key is missing from the file.
 class Fields {
 public:
     using Visit = std::function<void(Fields&)>;
@@ -82,11 +82,11 @@ public:
     virtual void any_flag(std::string_view name, std::optional<bool>& value, const About& about) = 0;
     virtual void any_whole(std::string_view name, std::optional<int64_t>& value, int64_t lower, int64_t upper,
                            const About& about) = 0;
-    /// A value with its own format: `read` parses it; `written` returns its JSON, or null for no value.
+    /// Visits a value with its own format: `read` parses it; `written` returns its JSON, or null to leave it out.
     virtual void other(std::string_view name, const std::function<void(const JsonNode&)>& read,
                        const std::function<std::optional<std::string>()>& written, const About& about) = 0;
 
-    /// An object with the fields that `visit` visits; `visit` may be called more than once.
+    /// Visits an object, whose fields `visit` visits; `visit` may be called more than once.
     virtual void section(std::string_view name, const Visit& visit, const About& about = {}) = 0;
     template <class Value>
     void section(std::string_view name, Value& value, const About& about = {})
@@ -106,19 +106,19 @@ public:
         };
         items(name, values.size(), most, visit, about);
     }
-    /// An object whose members are objects. `about` describes each member; the table of keys shows `placeholder`.
+    /// Visits an object whose members are objects. `about` describes a member, which the table calls `placeholder`.
     virtual void entries(std::string_view name, std::vector<std::string> keys, std::string_view placeholder,
                          const VisitEntry& visit, const About& about) = 0;
 
-    /// Whether a key is present. When reading: whether the file has the key; when writing: `is_set`.
+    /// Whether a key is present: in the file when reading, otherwise `is_set`.
     virtual bool has(std::string_view name, bool is_set) = 0;
-    /// Mentions a key that is valid in this object, but is not visited this time.
+    /// States that a key is valid in this object although it is not visited this time.
     virtual void mention(std::string_view name, const About& about) = 0;
-    /// A key of earlier versions: reading ignores its value, and writing leaves it out.
+    /// States a key of earlier versions: reading ignores its value, and writing leaves it out.
     virtual void retired(std::string_view /*name*/) {}
-    /// Refuses the input unless the condition holds; an empty `name` means the section itself.
+    /// Refuses the input unless `holds`; an empty `name` means the section itself.
     virtual void check(std::string_view /*name*/, bool /*holds*/, const std::string& /*expected*/) {}
-    /// Runs a check that throws its own errors; prefixes their messages with the section's key.
+    /// Runs a check that throws its own errors, and prefixes their messages with the section's key.
     virtual void checked(const std::function<void()>&) {}
 };
 

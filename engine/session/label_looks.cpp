@@ -37,14 +37,14 @@ GroupSettings settings_of(const LabelLook& look, const ColorGroup& standard)
     return settings;
 }
 
-/// Reads the segments of a 3D Slicer segmentation. Their colours are stated as shares of sRGB.
+/// Reads the segments of a 3D Slicer segmentation, whose colours are sRGB values from 0 to 1.
 LabelLooks looks_in_segments(const std::filesystem::path& file, const NrrdHead& head)
 {
     LabelLooks read;
     for (const NrrdSegment& segment : segments_of(head)) {
         LabelLook look{.value = segment.group, .name = segment.name};
         const std::vector<std::string_view> words = words_of(segment.color);
-        // The file does not state opacity, so the default stays.
+        // Uses the default opacity, since the file does not state one.
         std::array<uint8_t, 4> rgba = rgba_of(default_group(uint8_t(std::clamp<int64_t>(look.value, 1, 255))));
         bool is_color = words.size() == 3;
         for (size_t channel = 0; is_color && channel < 3; ++channel) {

@@ -3,11 +3,11 @@
 //
 //   "SHVR session"   the session as in its file (README.md), with the picture's size and camera; paths are relative to
 //                    the picture's folder
-//   "SHVR project"   the session file from which the picture was made, relative to the picture's folder; none for a
+//   "SHVR project"   the session file from which the picture was made, relative to the picture's folder; absent for a
 //                    bare volume. The journal next to the session file contains the annotation
 //   "SHVR outline"   "none" if the probe has no outline
 //
-// Annotation is not stored in the picture: if it has changed since the picture was made, a new picture shows its
+// A picture does not contain annotation. If annotation has changed since the picture was made, a new picture shows its
 // current state. Programs that re-encode pictures drop the text chunks. Any thread may call these.
 
 #include <optional>
@@ -20,13 +20,13 @@ namespace shvr {
 /// How the picture shows the probe.
 enum class PictureProbe {
     none,
-    plain,        ///< shown as in the window: always, without an outline over objects that hide it
-    as_rendered,  ///< shown as by `shvr render`: only if the session shows it, with its outline
+    plain,        ///< the probe is drawn as in the window: always, and without its outline
+    as_rendered,  ///< the probe is drawn as by `shvr render`: if the session shows it, with its outline
 };
-/// `picture`: the picture's file. `project`: the "SHVR project" described above; may be empty.
+/// `picture`: path of the picture's file. `project`: the value of "SHVR project" above; may be empty.
 PictureTexts texts_of_picture(Session session, const Camera& camera, const std::filesystem::path& picture,
                               const std::filesystem::path& project, PictureProbe probe);
-/// Whether a picture rendered from that file outlines the probe; false for pictures taken in the window.
+/// Whether pictures rendered from that file outline the probe. False for a picture taken in the window.
 bool outlines_probe(const std::filesystem::path& picture);
 
 struct PictureSession {

@@ -11,7 +11,7 @@ constexpr Quality QUALITIES[] = {
      .note = "To look around in on a slow machine: about 1 of 255 levels from the reference (root mean square), "
              "27 at most. Step 1, no narrow peaks.",
      .step_voxels = 1.0,
-     .opacity_limit = 0.99,  // 0.95 would take three quarters of the time, but deep fog would be 6 levels of 255 off
+     .opacity_limit = 0.99,  // 0.95 takes 3/4 of the time, but errors in deep fog reach 6 of 255 levels
      .detail = 0.5},
     {.name = "interactive",
      .note = "To work in, and what a new session has: about 0.2 of 255 levels from the reference, 9 at most. Step 0.5.",
@@ -24,7 +24,7 @@ constexpr Quality QUALITIES[] = {
     {.name = "reference",
      .note = "To compare with: light is integrated to about 1e-5 (measured without iso-surfaces, smooth borders and "
              "occlusion), exact sampling, rays end where nothing is left.",
-     .step_voxels = 1.0,  // the longest pieces; errors do not depend on the step
+     .step_voxels = 1.0,  // the largest step: integration is exact for any step
      .opacity_limit = 1.0,
      .sampling = Sampling::exact,
      .detail = 0.0,

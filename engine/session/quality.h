@@ -1,6 +1,6 @@
 #pragma once
-// Four trade-offs between a picture's time and its errors, as data: offered by the window, set by `render.quality`.
-// Pure; any thread.
+// Four presets that trade the time of a picture for its errors. The window offers them, and `render.quality` selects
+// one. Pure functions; any thread.
 
 #include <optional>
 #include <span>
@@ -22,12 +22,12 @@ struct Quality {
     bool exact_integral = false;
 };
 
-/// All qualities, from the fastest to the most exact.
+/// Returns all qualities, from the fastest to the most exact.
 std::span<const Quality> qualities();
 void take(RenderSettings& render, const Quality& quality);
-/// The quality with exactly these settings; null if the user chose others.
+/// Returns the quality with exactly these settings; null if there is none.
 std::optional<Quality> quality_of(const RenderSettings& render);
-/// The keys of `render` that a quality sets.
+/// Returns the keys of `render` that a quality sets.
 std::span<const std::string_view> keys_of_quality();
 
 }  // namespace shvr

@@ -38,20 +38,20 @@ bool is_session_file(const fs::path& path)
 JsonDocument document_for_volume(const fs::path& path)
 {
     JsonDocument document = session_document(R"({"shvr_session": 1, "volume": {}})", path.string());
-    // Set directly, not parsed from text: a path need not be valid UTF-8.
+    // Assigned as a path, not parsed from JSON text, since a path need not be valid UTF-8.
     document.value()["volume"]["path"] = whole_path(take_query(path.string())).string();
     return document;
 }
 
-/// Recreates the session of a project whose session file is missing, as an import makes it: finds the annotation, and
-/// sets looks to the program's defaults.
+/// Recreates the missing session file of a project as an import would make it: with the project's annotation, if there
+/// is any, and the default look.
 JsonDocument document_for_project(const fs::path& session_file, std::vector<std::string>& losses)
 {
     losses.push_back(sentence(session_file.string(),
                               ": is missing; expected the project's session with its looks; a new project's is taken, "
                               "which finds volume and annotation, and saving in the window writes it"));
     JsonDocument document = session_document(import_session(), session_file.string());
-    // Also handles projects of earlier versions that were not upgraded.
+    // Also finds the files of projects of earlier versions, which were never converted.
     const fs::path folder = session_file.parent_path();
     std::error_code ignored;
     if (fs::exists(folder / "paint.mask", ignored) && !fs::exists(folder.parent_path() / "labels" / "paint", ignored))
@@ -63,7 +63,7 @@ JsonDocument document_for_project(const fs::path& session_file, std::vector<std:
 
 namespace {
 
-/// Multiplies the points: the function is linear between points, so this multiplies the whole function.
+/// Multiplies the opacities of the points. Since the function is linear between points, this multiplies all of it.
 TransferFunction multiplied(const TransferFunction& function, double factor)
 {
     std::vector<ControlPoint> points(function.points().begin(), function.points().end());
@@ -87,7 +87,7 @@ Look Session::look() const
     const bool shows_unpainted = unpainted.visible && view.solo.value_or(0) == 0;
     const double factor = shows_unpainted ? unpainted.opacity : 0.0;
     if (factor != 1.0) look.transfer_function = multiplied(transfer_function, factor);
-    // Cuts everything away; slices, which ignore cuts, and surfaces stay visible.
+    // Hides the volume by a cut that leaves nothing. Slices, which ignore cuts, and surfaces stay visible.
     if (!view.volume) look.cut.upper = look.cut.lower;
     return look;
 }
@@ -99,7 +99,7 @@ fs::path session_file_of(const fs::path& path)
     std::error_code ignored;  // inaccessible files are treated as absent
     if (!fs::exists(path, ignored)) {
         if (leads_into_archive(path)) return {};
-        if (is_address(path.string())) return {};  // of a volume; its session would be a file here
+        if (is_address(path.string())) return {};  // a volume elsewhere; sessions are local
         fail(path.string(), ": does not exist; expected a session file (.json), a project folder or a volume file");
     }
     if (!fs::is_directory(path, ignored)) return is_session_file(path) ? path : fs::path();
@@ -129,7 +129,7 @@ void expect_volume_of_picture(const fs::path& picture, const Session& session)
          "with --set volume.path=...");
 }
 
-/// Checks settings that later ones replace, which would otherwise never be read: reads each with those before it.
+/// Reads each setting with those before it, to report errors even in settings that later ones replace.
 void check_replaced_settings(const JsonDocument& document, const std::vector<std::string>& settings,
                              const fs::path& folder)
 {
@@ -179,7 +179,7 @@ std::pair<JsonDocument, UnmeasuredSession> open_unmeasured(const fs::path& path,
     if (session_file.empty() && !picture) {
         if (std::string sentence = archived_project(path); !sentence.empty()) opened.losses.push_back(sentence);
     }
-    // A project with a valid record already has its statistics, so they need not be measured.
+    // For a project with a valid record, the volume's hash is known without reading voxels.
     const fs::path record = session.volume_path / PROJECT_RECORD;
     if (!session.procedural && opened.source->statistics() && fs::exists(record, ignored))
         session.volume_hash = read_project_record(record).content_hash;
@@ -195,7 +195,7 @@ UnmeasuredSession open_unmeasured_session(const fs::path& path, const std::vecto
 
 namespace {
 
-/// Checks that the points of a transfer function fit float32, their type on the device and in files.
+/// Checks that intensities fit float32, the type of transfer function points on the GPU and in files.
 void expect_range_of_points(const Session& session, const VolumeStatistics& statistics)
 {
     constexpr double LARGEST = std::numeric_limits<float>::max();

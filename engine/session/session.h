@@ -1,6 +1,6 @@
 #pragma once
 // A session: everything that determines a picture, in one JSON file (version 1). The window, the command line, goldens
-// and bug reports all use it. engine/session/README.md lists every key; unknown keys are refused by name.
+// and bug reports use it. engine/session/README.md lists all keys. Unknown keys are refused by name.
 
 #include <array>
 #include <filesystem>
@@ -22,7 +22,7 @@
 
 namespace shvr {
 
-/// The point that the view rotates about: the camera's target, the probe, or a picked point.
+/// The pivot of rotations of the view: the camera's target, the probe, or a picked point.
 enum class Pivot { target, probe, picked };
 inline constexpr Spelling<Pivot> PIVOTS[] = {
     {Pivot::target, "target"}, {Pivot::probe, "probe"}, {Pivot::picked, "picked"}};
@@ -33,27 +33,27 @@ constexpr std::span<const Spelling<Pivot>> spellings_of(Pivot)
 
 /// Settings of the interactive window.
 struct InteractionSettings {
-    double resolution = 0.7;          ///< share of the screen's resolution along each axis in motion; lower if too slow
+    double resolution = 0.7;          ///< resolution in motion, relative to the screen, per axis; lower if too slow
     double frames_per_second = 30.0;  ///< upper limit
-    uint32_t screenshot_scale = 4;    ///< scale of large screenshots: pixels per pixel of the window, along each axis
-    double workspace_scale = 1.0;     ///< scale of the probe's motion relative to the hand's motion on a haptic device
+    uint32_t screenshot_scale = 4;    ///< scale of large screenshots: pixels per pixel of the window, per axis
+    double workspace_scale = 1.0;     ///< motion of the probe relative to motion of the hand, with a haptic device
     Pivot pivot = Pivot::target;
-    // Lines and text that the window draws over its pictures
+    // Lines and text that the window draws over its pictures.
     bool scale_bar = true;
     bool axes = true;
-    bool probe_label = true;        ///< shows the probe's depth, and the relevant share of its ball
-    bool group_legend = true;       ///< lists colours and names of the groups that are drawn
-    bool screenshot_marks = false;  ///< screenshots show scale bar, axes, groups and distances like the window
+    bool probe_label = true;        ///< shows the probe's depth, and the relevant fraction of its ball
+    bool group_legend = true;       ///< lists the colours and names of all groups that are drawn
+    bool screenshot_marks = false;  ///< whether screenshots show scale bar, axes, groups and distances, too
     bool operator==(const InteractionSettings&) const = default;
 };
 
 inline constexpr double MIN_WORKSPACE_SCALE = 0.01, MAX_WORKSPACE_SCALE = 100.0;
 
-/// Actions of the left mouse button in the window, unless Alt is held:
+/// Tools of the left mouse button in the window, unless Alt is held:
 ///
-///   turn      turns the volume
+///   turn      rotates the view
 ///   paint     paints with the active group while held
-///   erase     removes paint while held, whatever the active group is
+///   erase     removes paint of any group while held
 ///   trace     a click away from all nodes adds a node, linked to the selected node; on a node, it selects or drags it
 ///   select    selects the node or internode that is clicked
 ///   measure   clicks set the two ends of a distance, one after the other
@@ -83,32 +83,32 @@ constexpr std::span<const Spelling<TouchPlane>> spellings_of(TouchPlane)
 struct FeelSettings {
     TouchMode mode = TouchMode::proximity;
     double strength = 1.0;        ///< factor of the force
-    double surface_share = 0.4;   ///< share of the ball that must be relevant for a surface to hold the probe
-    double stiffness = 300.0;     ///< N/m, for a probe of 2.5 mm in the hand's space
+    double surface_share = 0.4;   ///< fraction of the ball that must be relevant for a surface to hold the probe
+    double stiffness = 300.0;     ///< N/m, for a probe whose radius is 2.5 mm at the hand
     double damping = 1.0;         ///< N s/m
-    std::vector<uint8_t> groups;  ///< groups that can be felt, ascending; 0: unpainted voxels; empty list: everything
+    std::vector<uint8_t> groups;  ///< groups that can be felt, ascending; 0: unpainted voxels; empty: everything
     bool at_proxy = false;        ///< tools act at the centre of the structure that the probe touches
-    bool overlap_radius = false;  ///< derives the radius of new nodes from the filled share of the ball
-    bool to_nodes = false;        ///< tools act at a node, if one lies in the ball
-    bool to_lines = false;        ///< tools act at the nearest point of a centre line that passes through the ball
+    bool overlap_radius = false;  ///< derives the radius of a new node from the filled fraction of the probe's ball
+    bool to_nodes = false;        ///< tools act at a node if the probe's ball contains one
+    bool to_lines = false;        ///< tools act at the nearest point of a centre line that the probe's ball contains
     bool clicks = false;          ///< the device gives a short pulse when contact begins
     TouchPlane plane = TouchPlane::none;
-    /// Makes structures felt that pictures do not show because they are cut away, transparent, or in hidden groups.
+    /// Lets the user feel structures that pictures do not show: cut away, transparent, or in hidden groups.
     bool feels_hidden = false;
     bool operator==(const FeelSettings&) const = default;
 };
 inline constexpr double MAX_STIFFNESS = 1000.0, MAX_FELT_DAMPING = 1.2;
 
-/// The probe and the brush. Unset values are chosen for the volume.
+/// Settings of the probe and the brush. Values that are not set are chosen for the volume.
 struct ProbeSettings {
     std::optional<glm::dvec3> voxel;  ///< the probe's centre; default: the volume's centre
     BrushSettings brush;
     std::optional<double> haptic_threshold;  ///< intensity; default: the brush's threshold
-    bool shown = false;                      ///< shown in pictures; the window always shows it
-    /// Shows an iso-surface in the probe's region, at the brush's threshold. It shows which voxels density painting
-    /// would raise above the threshold.
+    bool shown = false;                      ///< whether pictures show it; the window always does
+    /// Shows an iso-surface at the brush's threshold in the probe's region: the limit of the voxels that density
+    /// painting would raise above the threshold.
     bool shell = false;
-    double shell_opacity = 0.4;  ///< opacity of one crossing of the surface
+    double shell_opacity = 0.4;  ///< opacity of each crossing of a ray with this surface
     bool preview = false;        ///< draws the brush's effect at the probe
     Tool tool = Tool::turn;
     bool guided = false;
@@ -123,7 +123,7 @@ struct ProbeSettings {
                                                ///< measuring succeeds
     bool centered_nodes = true;                ///< places clicked nodes at the centre of the visible structure, not on
                                                ///< its wall
-    /// The group that painting assigns to voxels: the active group, or 0.
+    /// Returns the group that painting assigns to voxels: the active group, or 0 to erase.
     uint8_t painted_group() const { return tool == Tool::erase ? uint8_t(0) : brush.group; }
     bool operator==(const ProbeSettings&) const = default;
 };
@@ -131,24 +131,24 @@ struct ProbeSettings {
 /// Maximum number of surfaces in one session file.
 inline constexpr size_t MAX_SESSION_SURFACES = 100'000;
 
-/// A distance that the user measured between two points, in voxels, so that it follows corrections of the spacing.
+/// A distance that the user measured between two points. Points are in voxels, so that it follows the spacing.
 struct Measurement {
     glm::dvec3 from{0.0}, to{0.0};
     bool operator==(const Measurement&) const = default;
 };
-/// Limited because each step of the history stores all measurements, before and after the step.
+/// The limit bounds the undo history, in which each step stores all measurements before and after it.
 inline constexpr size_t MAX_MEASUREMENTS = 1000;
 
 struct Session {
     std::filesystem::path volume_path;  ///< absolute, or empty if `procedural` is set
     std::optional<ProceduralSpec> procedural;
-    std::optional<RawLayout> raw_layout;  ///< layout of a file of bare voxels
-    OpenOptions open_options;             ///< selects from files that hold more than one volume
-    /// Hash of the volume's voxels (content_hash.h), computed by `open_session`. Empty if `open_session` did not visit
-    /// all voxels, or if the session was only read. Not written to files.
+    std::optional<RawLayout> raw_layout;  ///< layout of a raw file, which has no header
+    OpenOptions open_options;             ///< what to open in files that hold several volumes
+    /// Hash of the volume's voxels (content_hash.h), set by `open_session`. Empty if `open_session` did not read all
+    /// voxels, or if the session was not opened by it. Not written to files.
     std::string volume_hash;
     std::map<std::string, CameraSpec> cameras;  ///< by name; may be empty
-    std::string camera_name;                    ///< name of the current camera, as for `camera_named`; may be empty
+    std::string camera_name;                    ///< name of the current camera, or JSON (camera_named); may be empty
     TransferFunction transfer_function;
     std::string transfer_preset;  ///< preset name; `open_session` converts it into a function and clears it
     Groups groups;
@@ -166,27 +166,27 @@ struct Session {
     /// Path of the trace, in a format that `load_trace` reads; default: next to the mask. The file need not exist yet.
     std::filesystem::path trace_path;
     std::filesystem::path density_path;  ///< path of the density offsets, likewise
-    /// The journal next to the session file (engine/annotation/work/work.h); empty if a bare volume was opened.
+    /// The journal next to the session file (engine/annotation/work/work.h). Empty if a bare volume was opened.
     std::filesystem::path journal_path;
     bool operator==(const Session&) const = default;
 
-    /// Returns the part of the session on which pictures depend.
+    /// Returns the part of the session that determines pictures.
     Look look() const;
-    /// Returns the groups as pictures show them: with `view.solo`, all other groups are hidden.
+    /// Returns the groups as pictures show them. With `view.solo`, all other groups are hidden.
     Groups shown_groups() const;
 };
 
-/// `path`: a session file (.json), a project folder (its shvr/session.json is opened), or a volume file. For a volume
-/// file, makes a session with its path and a transfer function from the volume's statistics, and says so in `warnings`.
-/// `settings`: "key=value" with dotted keys ("render.step_voxels=0.25"), applied to the JSON before it is read.
-/// Relative paths in the file are relative to the file. A session file without a transfer function gets the same
-/// automatic function as a volume file. Session files have at most 16 MiB. A picture made by this program contains the
-/// session from which it was made (picture_session.h).
+/// `path`: a session file (.json), a project folder (whose shvr/session.json is opened), a picture
+/// made by this program (picture_session.h) or a volume file. A volume file, and a session without
+/// a transfer function, gets one from the volume's statistics, which `warnings` mention.
+/// `settings`: "key=value" with dotted keys ("render.step_voxels=0.25"), applied to the JSON before
+/// it is read. Relative paths in a session file are relative to the file. Session files have at
+/// most 16 MiB.
 struct OpenedSession {
     Session session;
     std::shared_ptr<const VolumeSource> source;
     VolumeStatistics statistics;
-    std::vector<std::string> warnings;   ///< about the session; the volume's warnings are in `source->info().warnings`
+    std::vector<std::string> warnings;   ///< about the session; those about the volume are in `source->info().warnings`
     std::vector<std::string> losses;     ///< saved data that is missing
     std::filesystem::path pictured{};    ///< for a picture: the session or project from which it was made; otherwise
                                          ///< empty
@@ -194,12 +194,12 @@ struct OpenedSession {
 };
 struct OpeningOptions {
     MeasureOptions measure{};
-    /// Called before any voxel is read, to refuse volumes that are too large.
+    /// Called before any voxel is read, to be able to refuse volumes that are too large.
     std::function<void(const Session& session, const VolumeSource& source)> before_reading{};
 };
 OpenedSession open_session(const std::filesystem::path& path, const std::vector<std::string>& settings = {},
                            const OpeningOptions& options = {});
-/// A session opened without any pass over the voxels: it has the transfer function of its file, and a hash only for
+/// A session opened without reading voxels: it has only the transfer function of its file, and a hash only for
 /// projects.
 struct UnmeasuredSession {
     Session session;
@@ -211,48 +211,48 @@ struct UnmeasuredSession {
 UnmeasuredSession open_unmeasured_session(const std::filesystem::path& path,
                                           const std::vector<std::string>& settings = {});
 
-/// Returns the session file that `path` refers to: `path` itself, or a project's session file, which may be missing;
+/// Returns the session file to open for `path`: `path` itself, or the session file of a project, which may be missing;
 /// empty for a volume. Fails if nothing exists at `path`.
 std::filesystem::path session_file_of(const std::filesystem::path& path);
 /// Returns "scan.journal" for "scan.json".
 std::filesystem::path journal_beside(const std::filesystem::path& session_file);
 
-/// Reads a session from text; relative paths are relative to `folder`, `origin` names the text in messages.
+/// Reads a session from text. Relative paths are relative to `folder`; messages call the text `origin`.
 Session parse_session(const std::string& text, const std::filesystem::path& folder, const std::string& origin,
                       const std::vector<std::string>& settings = {});
 std::unique_ptr<VolumeSource> open_source(const Session& session);
 
-/// `lower` is the upper end of the darker of two classes of voxels, the air around a scanned object (Otsu's threshold,
-/// but never below the median of the voxels). `upper` is the 90th percentile of the other voxels.
+/// Limits of the intensities of the scanned object. Voxels are split into two classes by Otsu's threshold. `lower`:
+/// that threshold, but at least the median of all voxels. `upper`: the 90th percentile of the voxels above `lower`.
 struct TissueRange {
     double lower = 0.0, upper = 1.0;  ///< intensities, lower < upper
 };
 TissueRange tissue_range(const VolumeStatistics& statistics);
 
-/// A ramp from grey to warm that leaves out the darker of two classes of voxels, at least half of all voxels
-/// (tissue_range), so that the air around a scanned object is invisible. Equal statistics give equal functions.
+/// Returns a ramp from grey to warm colours that leaves out the darker class of voxels, at least half of all
+/// (tissue_range), so that air around a scanned object is invisible. Equal statistics give equal functions.
 TransferFunction automatic_transfer_function(const VolumeStatistics& statistics);
 
-/// The brush's default threshold: half-way between a transfer function's lowest point and its opacity-weighted mean
-/// intensity, clamped to the volume's range.
+/// Returns the brush's default threshold: half-way between the lowest point of the transfer function and its mean
+/// intensity, weighted by opacity; clamped to the volume's range.
 double automatic_threshold(const TransferFunction& function, const VolumeStatistics& statistics);
 
-/// The default radius of new nodes in voxels along x: 1/500 of the volume's diagonal, but at least a voxel.
+/// Returns the default radius of new nodes, in voxels along x: 1/500 of the volume's diagonal, at least a voxel.
 double automatic_node_radius(const VolumeInfo& info);
 
-/// The default intensities that slices draw in black and in white. All but the darkest 0.5 % and the brightest 0.35 %
-/// of the voxels lie between them, to the precision of a histogram bin. Without a histogram: the whole range.
+/// Returns the default intensities for black and white in slices: all but the darkest 0.5 % and the brightest 0.35 % of
+/// the voxels lie between them, as exactly as histogram bins allow. Without a histogram: the whole range.
 ValueRange automatic_contrast(const VolumeStatistics& statistics);
 
-/// Returns the camera of that name: a camera of the session, a side of `camera_looking`, or a JSON object. For an empty
-/// name: the session's camera "front" if it exists, or else a camera that looks at the side_of_largest_face.
+/// Returns the camera of that name: a camera of the session, a side of `camera_looking`, or a JSON object. If the name
+/// is empty: the session's camera "front" or, if there is none, a camera that looks at the side_of_largest_face.
 Camera camera_named(const Session& session, const std::string& name_or_json, const VolumeInfo& volume);
 
-/// The names that `camera_named` accepts: cameras of the session, then sides.
+/// Returns the names that `camera_named` accepts: cameras of the session, then sides.
 std::vector<std::string> camera_names(const Session& session);
 
-/// Writes every key in the form that `parse_session` reads. Paths inside `folder` (or inside the project, if `folder`
-/// is a project's shvr) are relative to it, others absolute. Colours are rounded to the 8 bits of their spelling.
+/// Writes all keys in the form that `parse_session` reads. Paths inside `folder` (or inside the project, if `folder` is
+/// a project's shvr) become relative to it, others absolute. Colours are rounded to 8 bits per channel.
 std::string to_text(const Session& session, const std::filesystem::path& folder);
 
 }  // namespace shvr

@@ -9,7 +9,7 @@
 namespace shvr {
 namespace {
 
-/// Quantile of the shown voxels at which the ramp reaches its end.
+/// The ramp reaches its end at this quantile of the voxels that it shows.
 constexpr double FULL_QUANTILE = 0.9;
 
 ControlPoint point(double intensity, const char* color, double opacity)
@@ -17,7 +17,7 @@ ControlPoint point(double intensity, const char* color, double opacity)
     return {intensity, glm::dvec3(color_of(color).value()), opacity};
 }
 
-/// Otsu 1979: returns the number of bins in the lower class that maximizes the variance between the two classes.
+/// Returns the number of bins in the lower class for which the variance between the classes is largest (Otsu 1979).
 size_t otsu_split(const std::vector<int64_t>& histogram)
 {
     double count = 0.0;
@@ -45,7 +45,7 @@ size_t otsu_split(const std::vector<int64_t>& histogram)
     return best_split;
 }
 
-/// Returns how many bins, starting at `first`, contain at least `share` of the voxels in `first` and all higher bins.
+/// Returns how many bins from `first` on are needed to hold a `share` of all voxels in these and higher bins.
 size_t quantile_split(const std::vector<int64_t>& histogram, size_t first, double share)
 {
     const auto begin = histogram.begin() + std::ptrdiff_t(first);
@@ -78,7 +78,7 @@ double automatic_node_radius(const VolumeInfo& info)
 
 namespace {
 
-/// Widens the range of a volume with a single value, because a session requires black to be below white.
+/// Widens the range if the volume has a single value, because a session requires that black is below white.
 ValueRange contrast_between(double black, double white)
 {
     if (black < white) return {black, white};
@@ -95,7 +95,7 @@ ValueRange automatic_contrast(const VolumeStatistics& statistics)
     const std::vector<int64_t>& histogram = statistics.histogram;
     if (!(lower < upper) || histogram.size() < 4) return contrast_between(lower, upper);
     const double bin = (upper - lower) / double(histogram.size());
-    const size_t dark = quantile_split(histogram, 0, DARK_SHARE);  // at least one of these bins is not empty
+    const size_t dark = quantile_split(histogram, 0, DARK_SHARE);  // so the last of these bins is not empty
     const size_t bright = quantile_split(histogram, 0, 1.0 - BRIGHT_SHARE);
     const double black = lower + bin * double(dark > 0 ? dark - 1 : 0), white = lower + bin * double(bright);
     return contrast_between(black, std::max(white, black + 2.0 * bin));
@@ -106,7 +106,7 @@ TissueRange tissue_range(const VolumeStatistics& statistics)
     const double minimum = statistics.range().lower;
     const double maximum = statistics.range().upper;
     const std::vector<int64_t>& histogram = statistics.histogram;
-    // All voxels are equal, or there is no useful histogram.
+    // Without a useful histogram, or if all voxels are equal: the range around the single value.
     if (!(minimum < maximum) || histogram.size() < 4) return {minimum - 0.5, minimum + 0.5};
     const auto bins = double(histogram.size());
     const auto intensity_of = [&](size_t split) { return minimum + (maximum - minimum) * double(split) / bins; };
@@ -120,7 +120,7 @@ TransferFunction automatic_transfer_function(const VolumeStatistics& statistics)
 {
     const TissueRange tissue = tissue_range(statistics);
     const auto [minimum, maximum] = statistics.range();
-    // Shows a thin haze, so that something is visible.
+    // No classes can be found: shows a thin haze, so that the picture is not empty.
     if (!(minimum < maximum) || statistics.histogram.size() < 4)
         return TransferFunction({point(tissue.lower, "#808080", 0.02), point(tissue.upper, "#808080", 0.02)});
     return TransferFunction(

@@ -1,4 +1,4 @@
-// The keys of a session file, except those of the look (session_keys_look.cpp) and of cameras
+// The keys of a session file, except keys of the look (session_keys_look.cpp) and of cameras
 // (session_keys_camera.cpp).
 
 #include "engine/session/session_keys.h"
@@ -91,7 +91,7 @@ void spacing_fields(Fields& f, glm::dvec3& spacing, std::string& unit)
     f.check("unit", !has_controls(unit), "the name of a unit");
 }
 
-/// Fields for the spacing and the unit of a file; the file itself may state them, too.
+/// Fields for the spacing and the unit of a volume, which override those stated in its file.
 void spacing_fields(Fields& f, OpenOptions& options)
 {
     f.vector("spacing", options.spacing, above_zero(MIN_SPACING, MAX_SPACING), SPACING);
@@ -162,7 +162,7 @@ void raw_fields(Fields& f, std::filesystem::path& path, std::optional<RawLayout>
 
 constexpr int MAX_LEVEL = 23;
 
-/// A volume in one of three forms: a procedural function, bare voxels, or a file in a known format.
+/// Visits the volume, which has one of three forms: a procedural function, bare voxels, or a file in a known format.
 void volume_fields(Fields& f, Session& session)
 {
     if (f.has("procedural", session.procedural.has_value())) {
@@ -300,7 +300,7 @@ void annotation_fields(Fields& f, Session& session)
         session.density_path = offsets_beside(session.mask_path);
 }
 
-/// Group numbers, each once; empty: everything can be felt.
+/// Visits a list of group numbers, without repetitions. Empty: everything can be felt.
 void felt_groups_field(Fields& f, std::vector<uint8_t>& groups)
 {
     const auto read = [&](const JsonNode& node) {
@@ -474,7 +474,7 @@ void fields(Fields& f, SurfaceLook& surface)
 
 namespace {
 
-/// A function of its own, since files have other sections between the look and the cuts.
+/// The fields of the look, separate from those of the cuts because other sections lie between the two in a file.
 void look_fields(Fields& f, Session& session)
 {
     f.section("transfer_function", [&](Fields& transfer) { transfer_fields(transfer, session); });
@@ -506,7 +506,7 @@ void work_fields(Fields& f, Session& session)
     f.list("measurements", session.measurements, MAX_MEASUREMENTS, MEASUREMENTS);
 }
 
-/// Fields of user settings that are not part of the work, other than cameras.
+/// Fields of settings that are neither cameras nor part of the work.
 void passing_fields(Fields& f, Session& session)
 {
     f.section("view", session.view);

@@ -1,9 +1,9 @@
 #pragma once
 // The keys of a session file (fields.h). The default of a key is its value in a new `Session`. Reading, writing, --set
-// and the table of README.md are visitors.
+// and the table in README.md are visitors.
 //
-// To add a key, add a member with its default, a line in session_keys*.cpp, and a row in README.md; the test of the
-// table prints the row. Any thread.
+// To add a key: add a member with its default, a line in session_keys*.cpp, and a row in README.md (the test of the
+// table prints the row). Any thread.
 
 #include <map>
 #include <string_view>
@@ -20,7 +20,7 @@ void fields(Fields& f, Session& session);
 void lasting_fields(Fields& f, Session& session);
 /// Fields of the sections of session_patch.h.
 void setting_fields(Fields& f, Session& session);
-/// The fields of kept_settings.h; `camera` and `cameras` are one section, since `camera` names an entry of `cameras`.
+/// The fields of kept_settings.h. `camera` and `cameras` form one section, since `camera` names an entry of `cameras`.
 void kept_fields(Fields& f, Session& session);
 void fields(Fields& f, Groups& groups);
 void fields(Fields& f, SurfaceLook& surface);
@@ -36,7 +36,7 @@ void fields(Fields& f, OcclusionPoint& point);
 void fields(Fields& f, OcclusionSettings& occlusion);
 void fields(Fields& f, DistanceBlend& blend);
 void fields(Fields& f, RenderSettings& render);
-/// Fields of `render`: how the picture is computed, and settings of its look that are independent of this.
+/// Two parts of `render`: how pictures are computed (kept_settings.h), and their look (lasting_settings.h).
 void rendering_fields(Fields& f, RenderSettings& render);
 void picture_fields(Fields& f, RenderSettings& render);
 inline constexpr std::string_view PICTURE_KEYS[]{"background", "smooth_borders", "saturation"};
@@ -46,24 +46,24 @@ void fields(Fields& f, SliceSettings& slices);
 void fields(Fields& f, CameraSpec& camera);
 void fields(Fields& f, Camera& camera);
 void fields(Fields& f, SideView& view);
-/// Fields of `session.camera_name` (a name or the text of an object) and of `session.cameras`.
+/// Fields of `session.camera_name` (a name, or an object as text) and of `session.cameras`.
 void camera_fields(Fields& f, Session& session);
 
 /// A row of the table in README.md.
 struct SessionKey {
     std::string name;  ///< "groups.N.color"; in names, N stands for any number or name, NAME for any name
     std::string meaning, allowed, standard;
-    bool is_text = false;  ///< --set takes the value verbatim, without quotes
-    /// Whether this row describes the key named `key`.
+    bool is_text = false;  ///< whether --set takes the value as text, without quotes
+    /// Whether this row describes `key`. N and NAME in the row's name match any part of a key.
     bool covers(std::string_view key) const;
 };
 std::vector<SessionKey> session_keys();
 
-/// The rows of the keys that `visit` visits, in this order; for objects other than sessions.
+/// Returns the rows of the keys that `visit` visits, in this order. For objects other than sessions.
 std::vector<SessionKey> keys_of(const Fields::Visit& visit);
 
 inline const NumberRange SHARE{0.0, 1.0};
-/// The range of coordinates: wide enough for any volume in any unit; squares of coordinates do not overflow.
+/// The range of coordinates: wide enough for any volume and unit, without overflow in squares of coordinates.
 inline const NumberRange COORDINATE{-1e15, 1e15};
 /// The range of voxel values.
 inline const NumberRange INTENSITY{-3.4e38, 3.4e38};
@@ -71,18 +71,18 @@ inline const NumberRange INTENSITY{-3.4e38, 3.4e38};
 // session_read.cpp
 JsonDocument session_document(std::string_view text, const std::string& origin);
 Session read_session(const JsonDocument& document, const std::filesystem::path& folder);
-/// Returns a sentence for each key of earlier versions in `document` that reading ignores (Fields::retired).
+/// Returns a sentence for each key of earlier versions in `document`, which reading ignores (Fields::retired).
 std::vector<std::string> removed_keys_in(const JsonDocument& document, const std::string& origin);
 CameraSpec read_camera(const JsonNode& node);
-/// Returns an object with these sections as JSON.
+/// Returns the text of a JSON object with these sections.
 std::string text_of_sections(const SettingValues& values);
-/// Reads the sections that `lasting_fields` visits into a new session; the others keep their defaults.
+/// Reads into a new session the sections that `lasting_fields` visits; the others have their defaults.
 Session read_lasting(const JsonDocument& document);
-/// Reads the sections that `setting_fields` visits into a new session.
+/// Reads into a new session the sections that `setting_fields` visits.
 Session read_settings(const JsonDocument& document);
-/// Reads the sections that `kept_fields` visits into a new session.
+/// Reads into a new session the sections that `kept_fields` visits.
 Session read_kept(const JsonDocument& document);
-/// Whether a camera is given as an object, not by name.
+/// Whether a camera is stated as a JSON object rather than by name.
 bool is_camera_object(const std::string& name_or_json);
 glm::dvec3 read_color(const JsonNode& node);
 

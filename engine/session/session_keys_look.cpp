@@ -94,7 +94,7 @@ void fields(Fields& f, Unpainted& unpainted)
 
 namespace {
 
-/// Sets the keys that a preset covers; explicit keys of the same file are read later and override the preset.
+/// Sets the keys that the quality preset covers. Keys that the file states are visited later, and override the preset.
 void quality_fields(Fields& f, RenderSettings& render)
 {
     const About about{.meaning =
@@ -111,7 +111,7 @@ void quality_fields(Fields& f, RenderSettings& render)
         if (name == each.name) take(render, each);
 }
 
-// Keys for how a picture is computed are in two places of a file: before the background, and after it.
+// How a picture is computed takes two functions, since the keys of a file are before and after the background.
 
 void sample_fields(Fields& f, RenderSettings& render)
 {

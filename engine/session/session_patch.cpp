@@ -17,7 +17,7 @@ json settings_of(Session session)
     return json::parse(write_fields({}, [&](Fields& f) { setting_fields(f, session); }));
 }
 
-/// Replaces arrays as a whole, as merge patches do.
+/// Replaces arrays as a whole, as JSON merge patches do.
 json difference(const json& before, const json& after)
 {
     json patch = json::object();

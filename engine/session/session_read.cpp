@@ -11,7 +11,7 @@
 namespace shvr {
 namespace {
 
-/// Collects the keys that an object may have. Reads only those values that determine which other keys are valid.
+/// Collects the keys that an object may have. Reads a value only if other keys are valid depending on it.
 class KnownKeys : public Fields {
 public:
     explicit KnownKeys(const JsonNode& node) : node_(node) {}
@@ -124,7 +124,7 @@ public:
         static_assert(PATH_MAX == 4096);
         if (text.size() >= PATH_MAX) node.refuse("a path of less than 4096 bytes");
         if (is_address(text) && about.allowed == std::string_view(PATH_OR_ADDRESS)) {
-            // The query of an address is a credential, and stays out of the session and of messages.
+            // The query of an address is a credential, and must not appear in the session or in messages.
             value = node.checked([&] {
                 const std::string address = take_query(text);
                 static_cast<void>(parse_address(address));
@@ -210,7 +210,7 @@ public:
 private:
     Reader(const JsonNode& node, const std::filesystem::path& folder) : node_(node), folder_(folder) {}
 
-    /// The value of a key, which may be missing. Reading a required value fails if it is missing.
+    /// The value of a key that may be missing. A missing required value counts as present, so that reading it fails.
     struct Member : JsonNode {
         bool is_taken;
         explicit operator bool() const { return is_taken; }

@@ -1,5 +1,5 @@
-// "--set key=value": sets values in the JSON of a session by dotted keys. The table of keys determines the type: text
-// values are taken verbatim, all others are JSON.
+// "--set key=value": sets values in the JSON of a session by dotted keys. The table of keys determines types: values of
+// text keys are taken literally, all others are parsed as JSON.
 
 #include <charconv>
 
@@ -20,7 +20,7 @@ struct Setting {
     json value;
 };
 
-/// Returns the value of a setting. The value of a text key may also be spelled as a JSON string.
+/// Returns the value of a setting. A text may also be spelled as a JSON string, with quotes.
 json value_of(const std::string& key, const std::string& text, const std::string& setting)
 {
     static const std::vector<SessionKey> keys = session_keys();
@@ -36,7 +36,7 @@ template <class... Parts>
     throw UsageError(sentence("--set ", setting, ": ", parts...));
 }
 
-/// Whether a text is valid UTF-8, as required of keys and values because messages quote them.
+/// Whether a text is valid UTF-8. Keys and values must be, since messages quote them.
 bool is_utf8(const std::string& text)
 {
     try {
@@ -65,7 +65,7 @@ Setting parse_setting(const std::string& setting)
     return parsed;
 }
 
-/// Returns the member or element `key` of `container`; creates it if an object lacks it.
+/// Returns the member or element `key` of `container`. Creates a missing member of an object.
 json& member_of(json& container, const std::string& key, const std::string& container_key, const std::string& setting)
 {
     if (container.is_object()) return container[key];
@@ -78,13 +78,13 @@ json& member_of(json& container, const std::string& key, const std::string& cont
     return container[index];
 }
 
-/// Returns a copy of the default if it is an array ("render.size"), so that one of its elements can be set.
+/// Returns a copy of the default if it is an array ("render.size"), so that single elements of it can be set.
 json missing_container(const json* fallback)
 {
     return fallback && fallback->is_array() ? *fallback : json::object();
 }
 
-/// Erases the keys that a quality sets, because a quality replaces keys that were given before it.
+/// Erases the keys that a quality sets: the quality overrides keys that were set before it.
 void erase_keys_of_quality(json& render)
 {
     for (const std::string_view key : keys_of_quality()) render.erase(std::string(key));

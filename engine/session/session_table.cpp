@@ -1,4 +1,4 @@
-// The table of keys, for README.md and for --set, which uses it to find out which values are texts.
+// The table of keys, for README.md and for --set, which finds in it which values are texts.
 
 #include <algorithm>
 #include <cmath>
@@ -17,12 +17,12 @@ std::string in_code(std::string_view text)
 
 std::string range_text(double lower, double upper)
 {
-    // Prints 0.0001 instead of the shortest form, 1e-04.
+    // Prints fractions without an exponent: 0.0001, not the shorter 1e-04.
     const auto digits = [](double value) { return value == std::floor(value) ? digits_of(value) : sentence(value); };
     return digits(lower) + " ... " + digits(upper);
 }
 
-/// Visits a new session. `takes_optional_forms` selects one of two forms where keys exclude each other.
+/// Visits a new session. `takes_optional_forms` selects between two forms whose keys exclude each other.
 class Table : public Fields {
 public:
     Table(std::vector<SessionKey>& rows, std::string prefix, bool takes_optional_forms)

@@ -1,4 +1,4 @@
-// Writes session files; the keys are in the order in which session_keys*.cpp visits them.
+// Writes session files. Keys have the order in which session_keys*.cpp visits them.
 
 #include <nlohmann/json.hpp>
 
@@ -18,7 +18,7 @@ std::string path_text(const std::filesystem::path& path, const std::filesystem::
     if (leads_to_network(path)) return path.string();
     const std::filesystem::path whole = std::filesystem::absolute(folder / ".").lexically_normal();
     const std::filesystem::path relative = path.lexically_relative(whole);
-    // The files of a project lie in its folder shvr or next to that folder, and move together with it.
+    // The files of a project move together: they are in its folder shvr, or in the folder that contains shvr.
     const bool is_project = whole.parent_path().filename() == "shvr";
     auto step = relative.begin();
     if (is_project && step != relative.end() && *step == "..") ++step;
@@ -95,7 +95,7 @@ public:
     void entries(std::string_view name, std::vector<std::string> keys, std::string_view, const VisitEntry& visit,
                  const About&) override
     {
-        // Appends to the list: inserting by key would search all members, and there may be 100,000 cameras.
+        // Appends to a list, since inserting by key is a linear search, and there may be 100,000 cameras.
         OrderedJson::object_t members;
         for (const std::string& key : keys)
             members.emplace_back(key, write(folder_, [&](Fields& f) { visit(f, key); }));
@@ -117,7 +117,7 @@ bool is_row(const OrderedJson& value)
     return std::ranges::none_of(value, [](const OrderedJson& member) { return member.is_structured(); });
 }
 
-/// Returns the JSON text, indented by two spaces; arrays of plain values and control points take one line each.
+/// Returns JSON text, indented by two spaces. Arrays of plain values, and control points, take one line each.
 std::string laid_out(const OrderedJson& value, const std::string& indent, bool may_be_row)
 {
     if (!value.is_structured() || value.empty() || (is_row(value) && (value.is_array() || may_be_row)))
@@ -133,7 +133,7 @@ std::string laid_out(const OrderedJson& value, const std::string& indent, bool m
     return value.is_array() ? "[" + text + "]" : "{" + text + "}";
 }
 
-/// Returns a value in human-readable form. For points and similar items, states only their number.
+/// Returns a value for people to read; of points and similar items, only their number.
 std::string in_words(const OrderedJson& value)
 {
     if (value.is_number_float()) return sentence(value.get<double>());
@@ -146,14 +146,14 @@ std::string in_words(const OrderedJson& value)
 }
 
 struct ChangedKey {
-    std::string path, from, to;  ///< values in words; empty if there is no value
+    std::string path, from, to;  ///< values for people to read; empty if there is no value
 };
 
-/// Adds the keys of a section that differ. An array counts as one value.
+/// Adds the keys whose values differ in a section. An array counts as one value.
 void add_changes(const OrderedJson& was, const OrderedJson& is, const std::string& path, std::vector<ChangedKey>& found)
 {
     if (!was.is_object() || !is.is_object()) {
-        // For a whole object that is added or removed, its name is sufficient.
+        // An object that is added or removed as a whole is described by its name alone.
         const auto words = [](const OrderedJson& value) {
             return value.is_null() || value.is_object() ? std::string() : in_words(value);
         };
@@ -182,7 +182,7 @@ std::string in_words(const ChangedKey& changed)
     return sentence(path, " ", changed.from, " to ", changed.to);
 }
 
-/// Describes the difference of one section: its name and, if only a few values differ, the names of these values.
+/// Describes the difference of a section by its name and, if only a few values differ, by these.
 std::string difference_of(std::string name, const std::string& before, const std::string& after)
 {
     constexpr size_t MOST = 3;
@@ -219,13 +219,13 @@ std::string write_fields(const std::filesystem::path& folder, const Fields::Visi
 
 SettingValues lasting_settings(const Session& session)
 {
-    Session written = session;  // a copy, because fields take a mutable session
+    Session written = session;  // a copy, since fields() takes a mutable session
     return sections_of(Writer::write({}, [&](Fields& f) { lasting_fields(f, written); }));
 }
 
 SettingValues kept_settings(const Session& session)
 {
-    // A copy, as above, but without surfaces: there may be many, and this is called often.
+    // A copy, as above, but without the surfaces: these may be many, and this function is called often.
     Session written;
     take_kept_sections(written, session);
     return sections_of(Writer::write({}, [&](Fields& f) { kept_fields(f, written); }));
@@ -244,7 +244,7 @@ std::string difference_of(const SettingValues& before, const SettingValues& afte
 
 std::string to_text(const Session& session, const std::filesystem::path& folder)
 {
-    Session written = session;  // a copy, because `fields` takes a mutable session
+    Session written = session;  // a copy, since fields() takes a mutable session
     try {
         const OrderedJson document = Writer::write(folder, [&](Fields& f) { fields(f, written); });
         return laid_out(document, "", false) + "\n";

@@ -1,6 +1,6 @@
 #pragma once
-// Transfer functions that fit any volume, from assets/transfer_functions (its README.md describes the files). Any
-// thread.
+// Transfer functions that can be scaled to any volume, from assets/transfer_functions (see its README.md for the
+// files). Any thread.
 
 #include <string>
 #include <vector>
@@ -11,29 +11,29 @@ namespace shvr {
 
 struct TransferPreset {
     std::string name, note;
-    std::vector<ControlPoint> points;  ///< the `intensity` of a point is the fraction `at` in the preset's file
-    bool extends = true;               ///< the last point's look extends to the volume's largest intensity
-    bool is_own = false;               ///< made by the user, not shipped with the program
+    std::vector<ControlPoint> points;  ///< here `intensity` is the fraction `at` of the preset's file
+    bool extends = true;               ///< whether the last point's look extends up to the largest intensity
+    bool is_own = false;               ///< made by the user; false: part of the program
 };
 
-/// Returns all presets, sorted by name; none if the program finds no assets. Fails if a file is malformed.
+/// Returns all presets of the program, sorted by name; none if assets are not found. Fails if a file is malformed.
 std::vector<TransferPreset> transfer_presets();
-/// Returns the user's own presets, from a folder that need not exist; leaves out malformed files, with the reason.
+/// Returns the user's presets, from a folder that need not exist. Leaves out malformed files, and returns the reasons.
 std::vector<TransferPreset> own_transfer_presets(const std::filesystem::path& folder,
                                                  std::vector<std::string>& warnings);
 TransferPreset read_transfer_preset(const std::filesystem::path& file);
-/// Returns the function as a preset that restores it, except for rounding, in the volume with these statistics.
+/// Returns a preset that gives the function again, except for rounding, in a volume with these statistics.
 TransferPreset preset_of(const TransferFunction& function, const std::string& name, const VolumeStatistics& statistics);
-/// Returns the text of a preset in the form that `parse_transfer_preset` reads.
+/// Returns the JSON of a preset, which `parse_transfer_preset` reads.
 std::string text_of(const TransferPreset& preset);
-/// Returns the path of the file of a preset name in a folder. Fails if the name is not valid for a file.
+/// Returns the path of a preset's file in a folder. Fails if the name cannot be a file name.
 std::filesystem::path preset_file(const std::filesystem::path& folder, const std::string& name);
-/// Returns the preset with this name; if there is none, fails with a list of the names.
+/// Returns the preset with this name. Fails with a list of the names if there is none.
 TransferPreset transfer_preset_named(const std::string& name);
-/// Parses a preset's text; `origin` names the text in messages.
+/// Parses the JSON of a preset. Messages call the text `origin`.
 TransferPreset parse_transfer_preset(const std::string& text, const std::string& name, const std::string& origin);
 
-/// Returns the preset's function, scaled to the intensities of a volume.
+/// Returns the function of a preset, scaled to the intensities of a volume.
 TransferFunction transfer_function_of(const TransferPreset& preset, const VolumeStatistics& statistics);
 
 }  // namespace shvr
