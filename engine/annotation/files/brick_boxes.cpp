@@ -13,8 +13,8 @@ namespace {
 /// Size limit of a box that contains more than one brick.
 constexpr int64_t BOX_BYTES = int64_t{64} << 20;
 
-/// Returns the size of a box: that of a stored block, if the block is small enough and whole bricks fill it exactly (so
-/// no block is decoded twice); otherwise a layer of bricks if it is small enough, otherwise one brick.
+/// Returns the size of a box: the size of a stored block if the block is small and consists of whole bricks (so that no
+/// block is decoded twice); otherwise a layer of bricks if that is small, otherwise one brick.
 Size3 box_size(const VolumeSource& source)
 {
     const auto voxel_bytes = int64_t(bytes_of(source.info().type));
@@ -27,7 +27,7 @@ Size3 box_size(const VolumeSource& source)
     return is_small(layer) ? layer : Size3(BRICK_SIDE);
 }
 
-/// The numbers of the boxes that stored blocks touch, ascending; null if the source does not know its stored blocks.
+/// The indices of the boxes that stored blocks touch, ascending; null if the source does not list its stored blocks.
 std::optional<std::vector<int64_t>> touched_boxes(const VolumeSource& source, const Size3& box, const Size3& counts)
 {
     constexpr size_t MAX_REPEATED = size_t{1} << 22;

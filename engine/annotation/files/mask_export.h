@@ -1,9 +1,9 @@
 #pragma once
-// A mask in forms that other programs read. Any thread may call this.
+// A mask in formats that other programs read. Any thread may call this.
 //
 //   .mask        the thesis's raw bytes (mask_file.h)
 //   .nrrd .tif   engine/formats/export/volume_export.h
-//   .zarr        an OME-Zarr label image with its levels; so is PROJECT/labels/NAME
+//   .zarr        an OME-Zarr label image with resolution levels; PROJECT/labels/NAME, too
 
 #include <filesystem>
 
@@ -15,9 +15,9 @@ namespace shvr {
 
 bool is_mask_export(const std::filesystem::path& path);
 
-/// Replaces an old file (or label image) atomically. `volume` has the mask's size and gives the voxels' positions;
-/// `image` holds the additional metadata of a label image; `version` is as in `ImportOptions`. Returns a sentence if
-/// the old image is kept under another name because `foreign` demands it (engine/projects/import_sparse.h).
+/// Replaces an existing file (or label image) atomically. `volume` has the mask's size and gives the voxels' positions;
+/// `image` holds additional metadata of a label image; `version` is as in `ImportOptions`. Returns a sentence if the
+/// old image is kept under another name because `foreign` demands it (engine/projects/import_sparse.h).
 std::string export_mask(const std::filesystem::path& path, const Mask& mask, const VolumeInfo& volume,
                         const LabelImage& image = {}, std::optional<OmeZarrVersion> version = {},
                         const Progress& progress = {}, Foreign foreign = Foreign::refused);

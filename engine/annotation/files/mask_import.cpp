@@ -15,7 +15,7 @@ namespace shvr {
 
 namespace {
 
-/// The number of layers of a segmentation; 0 if the file is not a segmentation or has only one layer.
+/// Number of layers of a segmentation; 0 if the file is not a segmentation or has only one layer.
 int64_t layers_of(const std::filesystem::path& path, const std::vector<NrrdSegment>& segments)
 {
     if (segments.empty()) return 0;
@@ -39,7 +39,7 @@ std::string renumbered_in_words(const std::vector<NrrdSegment>& segments)
     return words;
 }
 
-/// Adds the mask's records to `mask`, at the place that the mask's file states.
+/// Adds the records of a mask to `mask`, placed where the mask's file states.
 void take_placed(const VolumeSource& source, const std::filesystem::path& path, const TraceSpace& space,
                  ImportedMask& mask)
 {

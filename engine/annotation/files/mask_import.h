@@ -16,14 +16,14 @@ namespace shvr {
 struct ImportedMask {
     std::vector<MaskBrickChange> changes{};  ///< the changes that turn an unpainted mask into this mask
     std::vector<std::string> losses{};       ///< content of the file that a mask cannot hold, one sentence each
-    std::vector<std::string> remarks{};      ///< how the mask was placed, and which groups its segments became
+    std::vector<std::string> remarks{};      ///< where the mask was placed, and which groups its segments became
 };
-/// Places a mask of another size or position on the volume's grid (mask_place.h) and merges the layers of a
+/// Places a mask of another size or position on the volume's grid (mask_place.h), and merges the layers of a
 /// segmentation (mask_segments.h). Fails if the mask's stated spacing or place does not fit the volume's (naming both),
-/// or if a voxel, whatever its type, is not a whole number from 0 to 255.
+/// or if a voxel (of whatever type) is not a whole number from 0 to 255.
 ImportedMask import_mask(const std::filesystem::path& path, const TraceSpace& space);
 
-/// Whether `save_mask_as` can write to the path; if not, its format is read-only.
+/// Whether `save_mask_as` can write to the path. If not, the format is read-only.
 bool is_mask_writable(const std::filesystem::path& path);
 /// Returns the path for saving a mask that was read from `mask`: the same path or, if its format is read-only,
 /// NAME.labels.zarr next to it. A path in an archive is returned unchanged, although masks cannot be saved there.

@@ -27,13 +27,13 @@ bool states_position(const TraceSpace& space)
     return !space.frame.empty() || space.origin != glm::dvec3(0.0) || space.directions != glm::dmat3(1.0);
 }
 
-/// The place of a mask on the volume's grid or, if there is none, the reason.
+/// The place of a mask on the volume's grid or, if it has none, the reason.
 struct Trial {
     std::optional<GridPlace> place{};
     std::string reason{};
 };
 
-/// A matrix of three columns: the steps from voxel to voxel along the axes.
+/// The steps from voxel to voxel along the three axes, as the columns of a matrix.
 glm::dmat3 steps_of(const TraceSpace& space, double factor)
 {
     glm::dmat3 steps;
@@ -41,7 +41,7 @@ glm::dmat3 steps_of(const TraceSpace& space, double factor)
     return steps;
 }
 
-/// `turn`: factors of the axes, (1, 1, 1), or (-1, -1, 1) to convert RAS to LPS or vice versa.
+/// `turn`: sign of each axis: (1, 1, 1), or (-1, -1, 1) to convert RAS to LPS or LPS to RAS.
 Trial try_place(const TraceSpace& mask, const TraceSpace& volume, const glm::dvec3& turn)
 {
     const std::optional<double> from = micrometres_in(mask.unit), to = micrometres_in(volume.unit);
@@ -196,7 +196,7 @@ void PlacedSource::read(const VoxelBox& box, std::span<std::byte> voxels) const
     const Size3 size = of_mask.size();
     std::vector<std::byte> found(size_t(size.x * size.y * size.z) * voxel_bytes);
     mask_.read(of_mask, found);
-    // Strides of the mask's axes in the volume's box, in voxels.
+    // Distances, in voxels of the volume's box, between neighbours along the mask's axes.
     const Size3 strides(1, box.size().x, box.size().x * box.size().y);
     int64_t begin = index_of(part.lower - box.lower, box.size());
     Size3 step(0);

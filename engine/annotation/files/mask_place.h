@@ -1,6 +1,6 @@
 #pragma once
-// Masks that other programs cropped or reoriented: uses the origin, directions and spacing of the mask to place its
-// voxels on the grid of the annotated volume. Any thread may call these.
+// Places masks that other programs cropped or reoriented: the mask's origin, directions and spacing give the place of
+// its voxels on the grid of the annotated volume. Any thread may call these.
 
 #include <array>
 #include <filesystem>
@@ -19,15 +19,15 @@ struct GridPlace {
     bool operator==(const GridPlace&) const = default;
 };
 
-/// Returns the place that the mask states. Returns null if the mask covers the volume voxel by voxel: its size equals
-/// the volume's, and so does its place if both state one. Fails, with the reason, if the mask is not on the volume's
-/// grid: other spacing or direction, a shift by a fraction of a voxel, no stated position, or no voxel in common.
+/// Returns the place that the mask's file states. Returns null if the mask's voxels are the volume's: equal sizes and,
+/// if both state a place, equal places. Fails, with the reason, if the mask is not on the volume's grid: other spacing
+/// or direction, a shift by a fraction of a voxel, no stated position, or no voxel in common.
 std::optional<GridPlace> place_of_mask(const std::filesystem::path& path, const VolumeInfo& mask,
                                        const TraceSpace& volume);
-/// Returns a phrase: "its 13, 13, 13 voxels are placed at 2, 2, 2 of this volume, with x in reverse order".
+/// Returns a phrase like "its 13, 13, 13 voxels are placed at 2, 2, 2 of this volume, with x in reverse order".
 std::string in_words(const GridPlace& place, const Size3& mask, const TraceSpace& volume);
 
-/// The mask on the volume's grid, surrounded by 0. The cost depends on the mask alone, not on the volume's size.
+/// The mask on the volume's grid, with 0 around it. The cost depends on the mask alone, not on the volume's size.
 class PlacedSource final : public VolumeSource {
 public:
     /// `mask` must outlive this object.
@@ -36,7 +36,7 @@ public:
     void read(const VoxelBox& box, std::span<std::byte> voxels) const override;
     std::optional<StoredBlocks> stored_blocks(int level, int64_t most) const override;
 
-    /// Fails, naming the first one, if a voxel of the mask outside the volume is not 0.
+    /// Fails if any voxel of the mask outside the volume is not 0, naming the first such voxel.
     void expect_nothing_outside(const std::filesystem::path& path) const;
 
 private:
@@ -45,7 +45,7 @@ private:
 
     const VolumeSource& mask_;
     GridPlace place_;
-    VoxelBox covered_;  ///< box of the mask in voxels of the volume; may extend beyond the volume
+    VoxelBox covered_;  ///< the mask's box in voxels of the volume; may extend beyond the volume
 };
 
 }  // namespace shvr

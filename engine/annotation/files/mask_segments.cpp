@@ -16,7 +16,7 @@ namespace shvr {
 
 namespace {
 
-/// Returns the box around the voxels of each group. In an empty box lower > upper.
+/// Returns the box around the voxels of each group. For a group without voxels, lower > upper.
 std::array<VoxelBox, 256> boxes_of(const Mask& mask)
 {
     std::array<VoxelBox, 256> boxes;
@@ -49,7 +49,7 @@ std::string extent_of(const VoxelBox& box)
     return text;
 }
 
-/// Whether the text states this colour, as three fractions, up to the rounding of channels to 8 bits.
+/// Whether the text states this colour as three fractions, up to rounding to 8 bits per channel.
 bool states_color(const std::string& text, const std::array<uint8_t, 4>& rgba)
 {
     const std::vector<std::string_view> words = words_of(text);
@@ -94,7 +94,7 @@ void add_missing_segments(NrrdHead& head, const NrrdHead& earlier)
             if (std::ranges::find(known, pair.key, &NrrdPair::key) == known.end())
                 head.pairs.push_back({segment_key(segment, pair.key), pair.value});
         if (!is_new) continue;
-        // The number of a group is its label value in a single layer.
+        // With a single layer, the number of a group is its label value.
         set_pair(head.pairs, segment_key(segment, "LabelValue"), std::to_string(segment.group));
         set_pair(head.pairs, segment_key(segment, "Layer"), "0");
     }

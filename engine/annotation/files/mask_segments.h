@@ -1,6 +1,6 @@
 #pragma once
-// A mask as a 3D Slicer segmentation (.seg.nrrd): each group is a segment with a name, a colour and an extent. What the
-// header of an NRRD mask states beyond them is kept.
+// A mask as a 3D Slicer segmentation (.seg.nrrd): each group is a segment with a name, a colour and an extent. All
+// other content of an NRRD mask's header is kept.
 
 #include <array>
 #include <atomic>
@@ -17,16 +17,16 @@
 
 namespace shvr {
 
-/// Returns the header of an NRRD mask, or the one that a label image keeps; null if there is none or it cannot be read.
-/// SHVR does not understand all of it (terminology, keys of other programs), but keeps it in saves and exports.
+/// Returns the header of an NRRD mask, or the header that a label image keeps; null if there is none or it cannot be
+/// read. SHVR does not interpret all of it (terminology, keys of other programs), but keeps it in saves and exports.
 std::optional<NrrdHead> mask_header(const std::filesystem::path& mask);
-/// Returns the header that a mask saved as `path` keeps: that of the mask there, with what only `earlier` states of its
-/// segments, and those that only `earlier` has; or else `earlier`. Segments of the same group are the same.
+/// Returns the header to keep when a mask is saved as `path`: that of the mask at `path`, plus the segments and keys of
+/// segments that only `earlier` has; without a mask there, `earlier`. Segments are identified by their group.
 std::optional<NrrdHead> header_to_keep(const std::filesystem::path& path, const std::optional<NrrdHead>& earlier);
 
-/// Describes the groups of this mask as segments in the header of an NRRD file. Segments that `head` has keep their
-/// numbers and all other keys; groups without a segment get a new one. Changes nothing unless the name of the file ends
-/// in .seg.nrrd or the header has segments. `looks`: names and colours of groups.
+/// Describes the groups of this mask as segments in the header of an NRRD file. Segments in `head` keep their numbers
+/// and all other keys; groups without a segment get a new one. Does nothing unless the file's name ends in .seg.nrrd or
+/// the header has segments. `looks`: names and colours of groups.
 void describe_segments(NrrdHead& head, const std::filesystem::path& path, const Mask& mask,
                        const std::vector<LabelImage::Color>& looks);
 
@@ -39,7 +39,7 @@ public:
 
     void read(const VoxelBox& box, std::span<std::byte> voxels) const override;
 
-    /// Number of voxels, among those read so far, that belong to more than one segment.
+    /// Number of voxels read so far that belong to more than one segment.
     int64_t overlaps() const { return overlaps_; }
 
 private:

@@ -9,13 +9,13 @@ namespace shvr {
 
 class MaskSource final : public SparseSource<uint8_t> {
 public:
-    /// `volume`, of the mask's size, gives the voxels' positions. The mask must outlive this object, unchanged.
+    /// `volume`, which has the mask's size, gives the voxels' positions. The mask must outlive this object, unchanged.
     MaskSource(const Mask& mask, const VolumeInfo& volume);
 };
 
 /// Returns, in ascending order, the records that turn an unpainted mask of the volume's size into `groups`. The cost is
-/// proportional to the amount of data that the source stores. Voxels may be of any type. Fails, naming `file` and the
-/// voxel, at the first voxel that is not a whole number from 0 to 255.
+/// proportional to the data that the source stores. Voxels may be of any type. Fails at the first voxel that is not a
+/// whole number from 0 to 255, naming `file` and the voxel.
 std::vector<MaskBrickChange> mask_changes(const VolumeSource& groups, const std::string& file);
 
 /// The voxels of a box of a mask as groups; fails like `mask_changes`.

@@ -18,7 +18,7 @@ VoxelType exported_type(VoxelType type)
     return bytes_of(type) == 4 && !is_float(type) ? VoxelType::int32 : VoxelType::float32;
 }
 
-/// The offsets as a volume of 32-bit integers or floats.
+/// Presents the offsets as a volume of 32-bit integers or floats.
 class FieldSource final : public SparseSource<uint32_t> {
 public:
     FieldSource(const DensityField& field, const VolumeInfo& volume, VoxelType type)

@@ -33,7 +33,7 @@ uint32_t load_bits(const std::byte* from, int64_t bytes)
 
 void store_bits(uint32_t bits, std::byte* to, int64_t bytes)
 {
-    std::memcpy(to, &bits, size_t(bytes));  // `bits` is in two's complement: its low half is the 16-bit number
+    std::memcpy(to, &bits, size_t(bytes));  // two's complement: the low half of `bits` is the 16-bit number
 }
 
 /// -0 becomes 0.

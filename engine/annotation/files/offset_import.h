@@ -10,9 +10,9 @@
 
 namespace shvr {
 
-/// The offsets for a volume of `type`; files of `export_offsets` are restored bit for bit. Fails if the size or stated
-/// spacing differs (naming both), if an offset is not finite or beyond `offset_limit`, or if an offset for an integer
-/// volume is not a whole number.
+/// Reads the offsets of a volume of `type`; files from `export_offsets` are restored bit for bit. Fails if size or
+/// stated spacing differs (naming both), if an offset is not finite or exceeds `offset_limit`, or if an offset of an
+/// integer volume is not a whole number.
 DensityField import_offsets(const std::filesystem::path& path, const TraceSpace& space, VoxelType type);
 
 /// Saves in the format that the path names, or as raw numbers if `export_offsets` does not support that format. Fails

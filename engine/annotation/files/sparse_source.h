@@ -1,5 +1,5 @@
 #pragma once
-// Presents sparse bricks as a volume that knows its stored blocks. Any thread may read it.
+// Presents sparse bricks as a volume source that lists its stored blocks. Any thread may read it.
 
 #include <algorithm>
 #include <cstring>
@@ -14,7 +14,7 @@ namespace shvr {
 template <class Value>
 class SparseSource : public VolumeSource {
 public:
-    /// `info` states the bricks' size and a type as wide as `Value`. The bricks must outlive this object, unchanged.
+    /// `info` states the size of `bricks` and a type as wide as `Value`. `bricks` must outlive this object, unchanged.
     SparseSource(const SparseBricks<Value>& bricks, VolumeInfo info) : VolumeSource(std::move(info)), bricks_(bricks)
     {
         SHVR_CHECK(bricks.size() == this->info().size && bytes_of(this->info().type) == sizeof(Value));

@@ -22,7 +22,7 @@ namespace {
 
 constexpr size_t HEADER_BYTES = size_t{64} << 10;
 constexpr int MAX_LABELS = 64;
-/// Share of labelled neighbours that are equal. Touching labels meet in surfaces; intensities vary from voxel to voxel.
+/// Least share of equal pairs among labelled neighbours: labels differ only at their borders, intensities everywhere.
 constexpr double MIN_EQUAL = 0.9;
 
 /// The first lines of an NRRD file, up to its voxels; empty for any other file.
@@ -37,7 +37,7 @@ std::string nrrd_header(const std::filesystem::path& path)
     return header.substr(0, header.find("\n\n"));
 }
 
-/// What a TIFF states in its description; empty for any other file, and one that cannot be read.
+/// The content that a TIFF's description states; empty for other files and for files that cannot be read.
 std::string content_in_tiff(const std::filesystem::path& path)
 {
     try {
@@ -47,12 +47,12 @@ std::string content_in_tiff(const std::filesystem::path& path)
     }
 }
 
-/// The values of a volume and the equality of neighbours along x.
+/// Counts the different values of a volume, and the pairs of neighbours along x with equal values.
 struct ValueCounts {
     std::array<bool, 256> is_there{};
     int values = 0;
-    int64_t pairs = 0, equal = 0;  ///< of neighbours of which neither is 0
-    bool are_labels = true;        ///< false: a value that no mask holds, or too many values
+    int64_t pairs = 0, equal = 0;  ///< pairs of neighbours without a 0; equal ones
+    bool are_labels = true;        ///< false: a mask cannot hold a value, or there are too many
 
     template <class T>
     void add_row(const T* row, int64_t count)

@@ -11,7 +11,7 @@ namespace shvr {
 
 namespace {
 
-/// TIFFs store spacings as fractions of two 32-bit numbers.
+/// TIFFs round spacings: they store them as fractions of two 32-bit numbers.
 constexpr double SPACING_TOLERANCE = 1e-5;
 
 }  // namespace

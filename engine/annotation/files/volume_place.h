@@ -8,15 +8,15 @@
 namespace shvr {
 
 /// Whether the file or folder has a format that states its size: OME-Zarr folders and archives, NRRD, MHD, NIfTI and
-/// TIFF. Raw bytes do not.
+/// TIFF. Files of raw bytes do not state it.
 bool states_its_size(const std::filesystem::path& path);
-/// Whether the path is an OME-Zarr archive, or leads into one; masks in archives are read, never written.
+/// Whether the path is an OME-Zarr archive or a path inside one. Masks in archives are read, but never written.
 bool is_in_archive(const std::filesystem::path& path);
 
-/// Fails, naming both, if `found` differs in size or in a spacing or place that both state. `what`: "a mask".
+/// Fails if size, or a spacing or place that both state, differs in `found`; names both. `what`: "a mask".
 void check_place(const std::filesystem::path& path, const char* what, const VolumeInfo& found, const TraceSpace& space);
 
-/// Describes a volume of annotation ("mask" or "offsets") that lies in the same place as the annotated volume.
+/// Describes a volume of annotation ("mask" or "offsets") at the same place as the annotated volume.
 VolumeInfo info_beside(const VolumeInfo& volume, const char* name, VoxelType type);
 
 }  // namespace shvr

@@ -20,7 +20,7 @@ std::optional<int64_t> bytes_of_voxels(const Size3& size, int64_t bytes_per_voxe
 FileDescriptor open_voxels(const std::filesystem::path& path, const Size3& size, int64_t bytes_per_voxel,
                            const char* kind)
 {
-    // Without O_NONBLOCK, opening a FIFO blocks until a writer appears, before we can detect that it is a FIFO.
+    // Without O_NONBLOCK, opening a FIFO would block until a writer appears, before its type can be checked.
     FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
     if (!file) fail(path.string(), ": cannot be opened: ", reason_of(errno));
     struct stat status {};

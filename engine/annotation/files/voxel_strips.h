@@ -15,7 +15,7 @@
 
 namespace shvr {
 
-/// Advice if a file that holds every voxel does not fit on its disk (expect_space).
+/// Advice for messages when a file with a value for each voxel does not fit on its disk (expect_space).
 inline constexpr const char* MORE_SPACE = "free some of it, or choose .zarr, which holds what is painted alone";
 /// Size in bytes of a file that holds all voxels; null if that exceeds 2^63 - 1.
 std::optional<int64_t> bytes_of_voxels(const Size3& size, int64_t bytes_per_voxel);
