@@ -16,8 +16,8 @@
 namespace shvr {
 
 struct SegmentMeasures {
-    uint32_t internode = 0;  ///< name of the segment: the smallest number among its internodes
-    uint8_t group = 0;       ///< group with the largest share of the length; in case of a tie, the smallest number
+    uint32_t internode = 0;  ///< identifies the segment: the smallest number among its internodes
+    uint8_t group = 0;       ///< group with the greatest share of the length; in a tie, the smallest number
     uint32_t from = 0, to = 0;
     size_t internodes = 0;
     double length = 0.0;
@@ -30,7 +30,7 @@ struct SegmentMeasures {
 struct BranchMeasures {
     uint32_t node = 0;
     uint8_t group = 0;
-    std::vector<double> angles_degrees;  ///< one per pair of the branch's internodes, in the order of their numbers
+    std::vector<double> angles_degrees;  ///< one per pair of the branch's internodes, ordered by their numbers
 };
 
 /// Betti numbers. A trace has no cavities.
@@ -61,11 +61,11 @@ Topology topology_of(const TraceGraph& trace);
 Topology topology_of(const Mask& mask, std::optional<uint8_t> group = {});
 
 inline constexpr int ALL_GROUPS = -1;
-/// The topology of all painted voxels (ALL_GROUPS), and of each group with voxels: each group's bricks are read once.
+/// The topology of all painted voxels (ALL_GROUPS) and of each group. Reads only those bricks that contain the group.
 std::map<int, Topology> topology_by_group(const Mask& mask, const Progress& progress = {});
 
-/// Returns a field of a table, quoted as in RFC 4180. Spreadsheets execute text that begins like a formula, so such
-/// text is prefixed with an apostrophe.
+/// Returns a field of a table, quoted as in RFC 4180. Text that begins like a formula is prefixed with an apostrophe,
+/// because spreadsheets would execute it.
 std::string csv_field(std::string text);
 
 /// A table, one measure per row: item, number, group, measure, value, unit (RFC 4180).

@@ -1,9 +1,9 @@
-// The topology of a mask, from runs of voxels along x. Only rows that cross painted bricks are read; everything else is
-// one unpainted set around them, so that the cost depends on the painted part alone. Union-find joins runs (Rosenfeld
-// and Pfaltz 1966; Wu, Otoo and Suzuki 2009 for the arrays).
+// The topology of a mask, from runs of voxels along x. Only rows near painted bricks are read; all voxels elsewhere
+// belong to one unpainted set around them, so the cost depends only on the painted part. Union-find joins runs
+// (Rosenfeld and Pfaltz 1966; Wu, Otoo and Suzuki 2009 for the arrays).
 //
-// The Euler characteristic needs the number of runs alone: n voxels of a row in r runs have n + r planes across x. Let
-// R be a row, P and Q its unions with the previous row along y and along z, and A the union of all four rows. Then the
+// The Euler characteristic needs only the number of runs: n voxels of a row in r runs have n + r planes across x. Let R
+// be a row, P and Q its unions with the previous row along y and along z, and A the union of all four rows. Then the
 // cells between the row and the previous ones are |A| + r(A) vertices, |A| + |P| + r(P) + |Q| + r(Q) edges, |R| + r(R)
 // + |P| + |Q| faces and |R| cubes; their alternating sum is r(R) - r(P) - r(Q) + r(A).
 
@@ -54,7 +54,7 @@ private:
     int64_t count_ = 0;
 };
 
-/// A run of painted voxels in a row, from `first` to `last`. `gap`: the set of the unpainted voxels before the run.
+/// A run of painted voxels in a row, `first` to `last`. `gap`: the set of the unpainted voxels before the run.
 struct Run {
     int64_t first = 0, last = 0;
     uint32_t set = 0, gap = 0;
@@ -63,10 +63,10 @@ using Runs = std::vector<Run>;
 
 struct Row {
     Runs painted;
-    Runs with_previous;  ///< the row's runs, united with those of the same row in the previous slice
+    Runs with_previous;  ///< union of the row's runs with those of the same row in the previous slice
 };
 
-/// Whether the first run ends before the second begins, with a voxel between them.
+/// Whether run `a` ends before run `b` begins, with at least one voxel between the two.
 bool is_apart(const Run& a, const Run& b)
 {
     return a.last + 1 < b.first;
@@ -108,10 +108,10 @@ void join_painted(const Runs& a, const Runs& b, Sets& parts)
     }
 }
 
-constexpr uint32_t OUTSIDE = 0;  ///< the set of the gaps that reach to infinity
+constexpr uint32_t OUTSIDE = 0;  ///< the set of the unpainted voxels that are connected with infinity
 
-/// Joins unpainted runs of two neighbouring rows that touch over faces. A row of n painted runs has n + 1 gaps; the
-/// first begins, and the last ends, at infinity.
+/// Joins unpainted runs (gaps) of two neighbouring rows that touch over faces. A row of n painted runs has n + 1 gaps;
+/// the first gap begins, and the last gap ends, at infinity.
 void join_gaps(const Runs& a, const Runs& b, Sets& gaps)
 {
     constexpr int64_t FAR = std::numeric_limits<int64_t>::max();
@@ -124,7 +124,7 @@ void join_gaps(const Runs& a, const Runs& b, Sets& gaps)
     }
 }
 
-/// The voxels that are counted: those of one group, or all that are painted.
+/// Selects the voxels to count: those of one group, or all painted voxels.
 class Chosen {
 public:
     explicit Chosen(std::optional<uint8_t> group)
@@ -162,14 +162,14 @@ private:
     uint64_t pattern_;
 };
 
-/// Bricks with the same y and z, by ascending x. A row without bricks ends the cells of the painted row before it.
+/// Bricks with the same y and z, by ascending x; none in a row that only closes the cells of painted rows.
 struct BrickRow {
     int64_t y = 0;
     std::vector<std::pair<int64_t, const MaskBrick*>> bricks;  ///< x of the first voxel
     std::array<Row, BRICK_SIDE> rows, previous;                ///< rows of this slice and of the previous one
 };
-/// Rows of bricks with the same z, ascending along y. Contains the rows with painted bricks, and the rows that follow a
-/// painted row along y, z or both.
+/// Rows of bricks with the same z, by ascending y: all rows with painted bricks, and all rows that follow a painted row
+/// along y, z or both.
 using Layer = std::vector<BrickRow>;
 
 class Counter {
@@ -232,7 +232,7 @@ private:
         }
     }
 
-    /// Reads row `y` of a slice; makes a set of each run of voxels, and of each gap between two runs.
+    /// Reads row `y` of a slice. Makes a set for each run of voxels, and for each gap between two runs.
     void read(BrickRow& bricks, int64_t y, int64_t slice)
     {
         Runs& runs = bricks.rows[size_t(y)].painted;
@@ -245,7 +245,7 @@ private:
         }
     }
 
-    /// Joins a row with its neighbours in this slice and the one before, and counts the cells between them.
+    /// Joins a row with its neighbours in this slice and the previous one, and counts the cells between them.
     void join(Row& row, const Row& below, const Row& before, const Row& before_below, const Row& after_below)
     {
         row.with_previous.clear();
@@ -262,7 +262,7 @@ private:
 
     const Mask& mask_;
     Chosen chosen_;
-    Layer last_;          ///< the previous layer; empty if it has no painted brick
+    Layer last_;          ///< the previous layer; empty if that layer has no painted brick
     int64_t last_z_ = 0;  ///< its place along z
     Sets parts_, gaps_;
     int64_t euler_ = 0;

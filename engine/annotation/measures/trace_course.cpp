@@ -24,8 +24,8 @@ TraceCourse::TraceCourse(const TraceGraph& trace) : segments_(segments_of(trace)
 {
     double whole_length = 0.0;
     for (const auto& [number, internode] : trace.internodes()) whole_length += trace.length_of(internode);
-    // Splits the few internodes that are much longer than most, because the search radius is half the longest
-    // piece.
+    // Splits the few internodes that are much longer than average: the search radius is half the longest piece, so one
+    // long internode would slow down every query.
     const double longest = 2.0 * whole_length / double(std::max<size_t>(1, trace.internodes().size()));
     for (size_t s = 0; s < segments_.size(); ++s) {
         const TraceSegment& segment = segments_[s];

@@ -1,7 +1,7 @@
 #pragma once
-// Locates positions along a trace: its segments are cut into short pieces, which an index searches. The results are
-// exact: a k-d tree of the pieces' midpoints gives candidates within half of the longest piece's length, and distances
-// are measured to the pieces themselves. Any thread may query.
+// Locates positions along a trace. Segments are cut into short pieces, and a k-d tree of the pieces' midpoints gives
+// all candidates (within half of the longest piece's length). Distances are measured to the pieces themselves, so
+// results are exact. Any thread may query.
 
 #include <optional>
 #include <vector>
@@ -11,12 +11,12 @@
 
 namespace shvr {
 
-/// A position on a trace, and the radius there.
+/// A position on a trace, with the trace's radius there.
 struct TraceSample {
     glm::dvec3 position;
     double radius;
 };
-/// Samples along an internode, both ends included: at most `step` apart, but no more than 65.
+/// Returns samples along an internode, including both ends: at most `step` apart, unless that needs more than 65.
 std::vector<TraceSample> samples_of(const TraceGraph& trace, const TraceInternode& internode, double step);
 
 class TraceCourse {
@@ -32,14 +32,14 @@ public:
         double distance;
         double along;  ///< distance from the start of the segment
     };
-    /// Returns the segments that touch a ball or miss it by at most `slack`, up to rounding errors, in ascending order.
-    /// Each comes with its position nearest to the ball.
+    /// Returns, in ascending order, the segments that touch a ball or miss it by at most `slack` (up to rounding
+    /// errors), each with its position nearest to the ball.
     std::vector<Near> near(const TraceSample& sample, double slack) const;
     struct Nearest {
         size_t piece;  ///< a straight part of a segment
         double distance;
     };
-    /// The nearest position on any segment; null if there are none.
+    /// The nearest position on any segment; null if there are no segments.
     std::optional<Nearest> nearest_to(const glm::dvec3& position) const;
     double distance_to_piece(size_t piece, const glm::dvec3& position) const;
     /// Upper bound of the rounding error of a distance.

@@ -21,8 +21,8 @@ struct Part {
     End a, b;
 };
 
-/// Returns an upper bound of the distance between any position of a part and the truth. The distance to one piece of
-/// the truth is convex along a line, so it is greatest at an end; and moving by d changes a distance by at most d.
+/// Returns an upper bound of the distance of a part from the truth. Along the straight part, the distance to one piece
+/// of the truth is convex, so it is greatest at an end. Moving by d changes a distance by at most d.
 double upper_bound(const Part& part, const TraceCourse& truth)
 {
     const double at_a = part.a.nearest.distance, at_b = part.b.nearest.distance;
@@ -31,7 +31,7 @@ double upper_bound(const Part& part, const TraceCourse& truth)
                      0.5 * (at_a + at_b + glm::length(part.b.position - part.a.position))});
 }
 
-/// Branch and bound: bisects a part while its bound exceeds `greatest`.
+/// Branch and bound: bisects a part while the part's upper bound exceeds `greatest`, the greatest distance so far.
 void search(const Part& whole, const TraceCourse& truth, double& greatest)
 {
     std::vector<Part> parts{whole};
@@ -70,8 +70,8 @@ double greatest_distance(const TraceGraph& trace, const TraceCourse& truth)
 std::optional<TraceDistance> distance_from(const TraceGraph& trace, const TraceCourse& truth)
 {
     if (truth.segments().empty()) return std::nullopt;
-    // Gauss-Legendre quadrature with two points in each part. It is exact for polynomials up to degree 3, and the
-    // squared distance to a line is a polynomial of degree 2.
+    // Two-point Gauss-Legendre quadrature in each part. It is exact for polynomials up to degree 3, and the squared
+    // distance to a line is a polynomial of degree 2.
     constexpr int PARTS = 8;
     constexpr double AWAY = 0.5 * std::numbers::inv_sqrt3;
     double sum = 0.0, length_sum = 0.0;

@@ -1,5 +1,5 @@
 #pragma once
-// Measures how far a trace is from the truth, along its length. Any thread may call this.
+// Measures the distance of a trace from the truth, along the trace's length. Any thread may call this.
 
 #include <optional>
 
@@ -7,13 +7,13 @@
 
 namespace shvr {
 
-/// Statistics of the distance from the trace's positions to the nearest position of the truth.
+/// Statistics of the distance from positions of the trace to the nearest position of the truth.
 struct TraceDistance {
-    /// Computed from 16 samples per internode; exact if the nearest internode of the truth does not change in between.
+    /// From 16 samples per internode; exact where the nearest internode of the truth does not change between samples.
     double root_mean_square = 0.0;
-    double greatest = 0.0;  ///< greatest distance; apart from rounding, too small by at most one part in 10^9
+    double greatest = 0.0;  ///< at most one part in 10^9 below the true maximum, apart from rounding
 };
-/// Null if the trace has no length or the truth no internodes.
+/// Null if the trace has no length, or if the truth has no internodes.
 std::optional<TraceDistance> distance_from(const TraceGraph& trace, const TraceCourse& truth);
 
 }  // namespace shvr

@@ -44,7 +44,7 @@ void TraceErrors::leave_out(size_t segment)
     for (const uint32_t node : {one.nodes.front(), one.nodes.back()}) ends_[node].erase(segment);
 }
 
-/// Begins with the shortest segments, so that the longer of two interchangeable segments is kept.
+/// Examines the shortest segments first, so that the longer one of two interchangeable segments is kept.
 void TraceErrors::leave_out_superfluous()
 {
     std::vector<std::pair<double, size_t>> candidates;
@@ -62,7 +62,7 @@ void TraceErrors::leave_out_superfluous()
         if (!is_needed(segment) && note_superfluous(segment)) leave_out(segment);
 }
 
-/// Counts a segment that is not needed; returns false if the segment is not an error.
+/// Counts a segment that is not needed as an error; returns false if it is no error.
 bool TraceErrors::note_superfluous(size_t segment)
 {
     const TraceSegment& one = with_.match.segments()[segment];
@@ -71,14 +71,14 @@ bool TraceErrors::note_superfluous(size_t segment)
         ++superfluous_;
         return true;
     }
-    // A trace that continues past an end of the truth, but within the end's ball, is only longer. That is no error.
+    // A trace that extends beyond an end of the truth, within the ball of that end, is too long. That is no error.
     if (degree(is_loose(front) ? back : front) < 3) return false;
     ++spurs_;
     return true;
 }
 
-/// Returns whether a segment alone follows the truth for at least half of its length, or joins other segments that
-/// follow the same segment of the truth.
+/// Returns whether the trace needs a segment: it is the only one that follows the truth for at least half of its
+/// length, or it joins other segments that follow the same segment of the truth.
 bool TraceErrors::is_needed(size_t segment) const
 {
     double alone = 0.0;
@@ -102,7 +102,7 @@ bool TraceErrors::passes_by(size_t truth_segment, const Follower& follower) cons
            length_of(follower.runs) <= std::min(2.0 * follower.tolerance, 0.5 * with_.course.length_of(truth_segment));
 }
 
-/// Returns the parts of the trace that follow a segment of the truth, ascending along it.
+/// Returns the joined parts of the trace that follow a segment of the truth, sorted by their start along the segment.
 std::vector<TraceErrors::Piece> TraceErrors::pieces_along(size_t truth_segment, std::optional<size_t> without) const
 {
     std::map<uint32_t, std::vector<size_t>> at;  // node -> indices into `pieces`
@@ -182,7 +182,7 @@ void TraceErrors::note_ends_near_branches(std::set<uint32_t>& unjoined) const
     }
 }
 
-/// Notes ends of the trace that lie on the way to a traced branch, with nothing traced between end and branch.
+/// Notes ends of the trace on the way to a traced branch if nothing is traced between the end and the branch.
 void TraceErrors::note_ends_before_branches(std::set<uint32_t>& unjoined) const
 {
     for (const auto& [branch, segments] : at_branch_) {
@@ -218,7 +218,7 @@ std::optional<uint32_t> TraceErrors::loose_end_nearest(const Piece& piece, const
     return nearest;
 }
 
-/// Returns whether a piece is joined to other segments at a branch.
+/// Returns whether a piece is joined to other segments at a branch of the truth.
 bool TraceErrors::is_attached(const Piece& piece, size_t truth_segment, uint32_t branch) const
 {
     const auto paired = with_.match.paired().find(branch);
@@ -231,7 +231,7 @@ bool TraceErrors::is_attached(const Piece& piece, size_t truth_segment, uint32_t
     });
 }
 
-/// Returns the segments of the trace that go from one segment of a branch to another, past the node paired with it.
+/// Returns the segments of the trace that pass a branch: they follow two of its segments without its paired node.
 std::set<size_t> TraceErrors::passing(uint32_t branch) const
 {
     std::map<size_t, int> followed;
@@ -250,7 +250,7 @@ std::set<size_t> TraceErrors::passing(uint32_t branch) const
     return segments;
 }
 
-/// Notes ends that are paired with a branch although another segment, not joined to them, passes that branch.
+/// Notes ends that are paired with a branch although another segment, which is not joined to them, passes the branch.
 void TraceErrors::note_branches_passed(std::set<uint32_t>& unjoined) const
 {
     for (const auto& [branch, node] : with_.match.paired())

@@ -1,6 +1,6 @@
 #pragma once
-// Counts the errors of a trace whose segments follow the truth: spurs, superfluous segments, breaks and unjoined ends.
-// trace_score.h defines them. Any thread may query.
+// Counts the errors of segments of a trace that follow the truth: spurs, superfluous segments, breaks and unjoined ends
+// (trace_score.h defines these terms). Any thread may query.
 
 #include <cstdint>
 #include <map>
@@ -28,7 +28,7 @@ public:
     int64_t count_gaps() const;
 
 private:
-    /// The followers of one segment of the truth that are joined to each other, and their extent along that segment.
+    /// Followers of one segment of the truth that are joined to each other, and the part of that segment they cover.
     struct Piece {
         std::vector<size_t> segments;
         glm::dvec2 extent;
@@ -50,9 +50,9 @@ private:
     std::set<size_t> passing(uint32_t branch) const;
 
     Compared with_;
-    std::set<size_t> left_out_;                          ///< segments of the trace that are errors themselves
-    std::map<uint32_t, std::multiset<size_t>> ends_;     ///< node of the trace -> segments that are kept and end there
-    std::map<uint32_t, std::vector<size_t>> at_branch_;  ///< branch of the truth -> the truth's segments there
+    std::set<size_t> left_out_;                          ///< segments of the trace that are counted as errors
+    std::map<uint32_t, std::multiset<size_t>> ends_;     ///< node of the trace -> segments that end there and are kept
+    std::map<uint32_t, std::vector<size_t>> at_branch_;  ///< branch of the truth -> segments of the truth there
     int64_t spurs_ = 0, superfluous_ = 0;
 };
 

@@ -48,8 +48,8 @@ TraceFollow::TraceFollow(const TraceGraph& truth, const TraceCourse& course, con
     for (auto& [truth_segment, some] : followers_) note_doubled(some);
 }
 
-/// Assigns each sample of a segment to a segment of the truth: the assignment with the smallest sum of squared
-/// distances among all that change segments only where the truth does (Viterbi 1967). Empty if there is none.
+/// Assigns each sample of a segment to a segment of the truth. Among all assignments that change segments only at nodes
+/// of the truth, returns the one with the smallest sum of squared distances (Viterbi 1967). Empty if there is none.
 std::vector<TraceCourse::Near> TraceFollow::follow(const std::vector<TraceSample>& samples) const
 {
     struct State {
@@ -92,14 +92,14 @@ bool TraceFollow::goes_over(size_t a, size_t b, const TraceSample& sample) const
     for (const uint32_t end : {from.nodes.front(), from.nodes.back()}) {
         if (end != to.nodes.front() && end != to.nodes.back()) continue;
         const TraceNode& node = truth_.node(end);
-        // A step on either side counts as part of the meeting point.
+        // Allows one step between samples on either side of the place where the segments meet.
         const double reach = sample.radius + node.radius + slack_ + (sample.radius + slack_) / 2.0;
         if (glm::length(node.position - sample.position) <= reach) return true;
     }
     return false;
 }
 
-/// Records the part of the truth that a segment of the trace follows; returns false if it follows none.
+/// Records which parts of the truth a segment of the trace follows; returns false if it follows no part.
 bool TraceFollow::add_follower(size_t index)
 {
     const std::vector<TraceSample> samples = match_.samples_along(match_.segments()[index]);
@@ -127,8 +127,8 @@ bool TraceFollow::add_follower(size_t index)
     return true;
 }
 
-/// Marks each follower whose part of the truth is also followed by an earlier entry of `followers`. The segment of the
-/// trace that is matched to this segment of the truth comes first and is never marked.
+/// Marks followers whose part of the truth is also followed by an earlier entry of `followers`. The segment of the
+/// trace that stands for this segment of the truth is sorted first and never marked.
 void TraceFollow::note_doubled(std::vector<Follower>& followers)
 {
     std::ranges::sort(followers, [](const Follower& a, const Follower& b) {
@@ -143,7 +143,7 @@ void TraceFollow::note_doubled(std::vector<Follower>& followers)
 }
 
 /// Returns whether two segments overlap: they share more than the surroundings of their ends or, if they join the same
-/// two nodes, at least half of the stretch that the shorter one follows.
+/// two nodes, at least half of the part of the truth that the shorter one follows.
 bool TraceFollow::doubles(const Follower& a, const Follower& b) const
 {
     const double shared = shared_length(a.runs, b.runs);

@@ -1,5 +1,5 @@
 #pragma once
-// Finds which parts of the truth each segment of a trace follows. trace_score.h defines the counts. Any thread may
+// Finds the parts of the truth that each segment of a trace follows; trace_score.h defines the terms. Any thread may
 // query.
 
 #include <map>
@@ -10,12 +10,12 @@
 
 namespace shvr {
 
-/// The parts of one segment of the truth that a segment of the trace follows.
+/// A segment of the trace that follows a segment of the truth, and the parts of the latter that it follows.
 struct Follower {
     size_t segment;  ///< index in the trace
     bool is_partner;
     std::vector<glm::dvec2> runs;  ///< intervals of length along the truth's segment, ascending and disjoint
-    double tolerance;              ///< length that two segments may share where they meet
+    double tolerance;              ///< length that two segments may share at a common end
 };
 
 /// The total length of ascending, disjoint runs.
@@ -29,11 +29,11 @@ public:
     /// Keeps references to all three.
     TraceFollow(const TraceGraph& truth, const TraceCourse& course, const TraceMatch& match, double slack);
 
-    /// The followed segments of the truth, each with the segments of the trace that follow it.
+    /// For each segment of the truth that is followed, the segments of the trace that follow it.
     const std::map<size_t, std::vector<Follower>>& followers() const { return followers_; }
-    /// The segments of the truth that a segment of the trace follows, each once.
+    /// The segments of the truth that a segment of the trace follows, without duplicates.
     const std::vector<size_t>& followed_by(size_t segment) const { return followed_by_[segment]; }
-    /// The total length of those parts of the truth that a segment of the trace follows.
+    /// The total length of the parts of the truth that a segment of the trace follows.
     double length_followed(size_t segment) const { return lengths_[segment]; }
     /// Segments of the trace that leave the truth, or switch to a segment of the truth that does not begin there.
     const std::set<size_t>& wrong() const { return wrong_; }

@@ -15,7 +15,7 @@ size_t degree(const TraceGraph& trace, uint32_t node)
     return trace.internodes_of(node).size();
 }
 
-/// Kind of a node, for matching: branches pair with branches first, ends with ends.
+/// Kind of a node for matching: branches (3) are paired with branches first, ends (1) with ends.
 int kind_of(const TraceGraph& trace, uint32_t node)
 {
     return int(std::min<size_t>(degree(trace, node), 3));
@@ -63,7 +63,7 @@ void TraceMatch::pair_nodes()
     }
 }
 
-/// Finds, for each internode of the trace, the segments of the truth that it stays near.
+/// Finds, for each internode of the trace, the segments of the truth near the internode's whole length.
 void TraceMatch::find_near()
 {
     for (const auto& [number, internode] : trace_.internodes()) {
@@ -100,7 +100,7 @@ void TraceMatch::pair_segments()
     }
 }
 
-/// Returns the segments of the truth that stay near every internode of `segment`.
+/// Returns the segments of the truth that are near every internode of `segment`.
 std::vector<size_t> TraceMatch::near_all(const TraceSegment& segment) const
 {
     std::vector<size_t> all = near_.at(segment.internodes.front());
@@ -132,7 +132,7 @@ std::vector<TraceSample> TraceMatch::samples_along(const TraceSegment& segment) 
     return samples;
 }
 
-/// Sum of the mean squared distances in both directions; null if either segment goes too far from the other.
+/// Sum of the mean squared distances in both directions; null if a part of either segment is not near the other.
 std::optional<double> TraceMatch::distance_between(const TraceSegment& segment, size_t truth_segment) const
 {
     std::optional<double> distance = covers(truth_segment, segment.internodes);
@@ -162,7 +162,7 @@ bool TraceMatch::is_found(size_t truth_segment) const
     return covers(truth_segment, ways_between(near, from->second, to->second)).has_value();
 }
 
-/// The internodes near a segment of the truth that are not part of a matched segment of the trace; ascending.
+/// The internodes near a segment of the truth whose own segments are not matched to any; ascending.
 std::vector<uint32_t> TraceMatch::free_near(size_t truth_segment) const
 {
     std::vector<uint32_t> internodes;
@@ -172,8 +172,8 @@ std::vector<uint32_t> TraceMatch::free_near(size_t truth_segment) const
     return internodes;
 }
 
-/// The internodes of all paths between two nodes that use only `internodes` and pass no other paired node; empty if
-/// there is no such path.
+/// The internodes of all paths between two nodes that use only `internodes` and pass no other paired node. Empty if no
+/// such path exists.
 std::vector<uint32_t> TraceMatch::ways_between(const std::vector<uint32_t>& internodes, uint32_t from,
                                                uint32_t to) const
 {
@@ -194,7 +194,7 @@ std::vector<uint32_t> TraceMatch::ways_between(const std::vector<uint32_t>& inte
     return core_of({passed.begin(), passed.end()}, {from, to});
 }
 
-/// The internodes that remain after loose ends are removed repeatedly; loose ends at `kept` nodes are not removed.
+/// Removes internodes with a loose end, repeatedly, and returns the others; ends at `kept` nodes do not count as loose.
 std::vector<uint32_t> TraceMatch::core_of(const std::vector<uint32_t>& internodes, const std::set<uint32_t>& kept) const
 {
     std::map<uint32_t, std::set<uint32_t>> ends;
@@ -219,7 +219,7 @@ std::vector<uint32_t> TraceMatch::core_of(const std::vector<uint32_t>& internode
     return {core.begin(), core.end()};
 }
 
-/// The mean squared distance of the internodes from a segment of the truth; null if they miss a part of it.
+/// The mean squared distance of a segment of the truth from the internodes; null if they do not cover all of it.
 std::optional<double> TraceMatch::covers(size_t truth_segment, const std::vector<uint32_t>& internodes) const
 {
     if (internodes.empty()) return std::nullopt;

@@ -1,7 +1,7 @@
 #pragma once
-// Matches parts of a trace to parts of the truth: nodes to branches and ends, segments to segments. A trace is a
-// multigraph, in which several segments may join the same two nodes; their courses then decide which is which. Any
-// thread may query.
+// Matches parts of a trace with parts of the truth: nodes with branches and ends, segments with segments. A trace is a
+// multigraph: several segments may join the same two nodes, and are then told apart by their courses. Any thread may
+// query.
 
 #include <map>
 #include <optional>
@@ -14,17 +14,17 @@ namespace shvr {
 
 class TraceMatch {
 public:
-    /// Keeps references to all three; `course` is the truth's.
+    /// Keeps references to the three objects; `course` is the course of the truth.
     TraceMatch(const TraceGraph& trace, const TraceGraph& truth, const TraceCourse& course, double slack);
 
-    /// For each paired branch or end of the truth, the node of the trace that is matched to it; one to one.
+    /// For each paired branch or end of the truth, the node of the trace that it is paired with; one to one.
     const std::map<uint32_t, uint32_t>& paired() const { return paired_; }
     /// Those nodes of the trace.
     const std::set<uint32_t>& stops() const { return stops_; }
 
-    /// The segments of the trace, which also end at `stops()`.
+    /// The segments of the trace; they end at `stops()`, too.
     const std::vector<TraceSegment>& segments() const { return segments_; }
-    /// The segment of the truth that a segment of the trace stands for, one to one: the ends of the two are paired, and
+    /// The segment of the truth that a segment of the trace stands for, if any; one to one. Their ends are paired, and
     /// each is near the other along its whole length. If several segments join the same two nodes, those with the
     /// smallest mean squared distance are matched first.
     std::optional<size_t> partner_of(size_t segment) const { return partners_[segment]; }
@@ -32,7 +32,7 @@ public:
     /// Whether a segment of the truth is found (trace_score.h).
     bool is_found(size_t truth_segment) const;
 
-    /// Samples in order along a segment of the trace, spaced by about half of the distance that counts as near.
+    /// Samples along a segment of the trace, in order; their spacing is about half of the distance that counts as near.
     std::vector<TraceSample> samples_along(const TraceSegment& segment) const;
 
 private:
@@ -52,7 +52,7 @@ private:
     double slack_;
     std::map<uint32_t, uint32_t> paired_;
     std::set<uint32_t> stops_;
-    std::map<uint32_t, std::vector<size_t>> near_;  ///< internode of the trace -> truth's segments near it, ascending
+    std::map<uint32_t, std::vector<size_t>> near_;  ///< internode of the trace -> near segments of the truth, ascending
     std::vector<TraceSegment> segments_;
     std::vector<std::optional<size_t>> partners_;        ///< per segment of the trace
     std::vector<std::optional<size_t>> truth_partners_;  ///< per segment of the truth

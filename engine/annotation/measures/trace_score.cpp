@@ -11,7 +11,7 @@ namespace shvr {
 
 namespace {
 
-/// Counts the painted voxels of a row for x from `first` to `last`. The row lies inside the volume.
+/// Counts the painted voxels of a row from x = `first` to `last`. The row must lie inside the volume.
 int64_t painted_in_row(const Mask& mask, int64_t first, int64_t last, int64_t y, int64_t z)
 {
     const glm::i64vec3 counts = mask.brick_counts();
@@ -86,7 +86,7 @@ double share_in_mask(const Mask& mask, const glm::dvec3& spacing, const glm::dve
     constexpr double MAX_VOXELS = double(int64_t{1} << 31);
     const glm::dvec3 centre = position / spacing, reach = radius / spacing;
     const glm::dvec3 box = 2.0 * reach + 1.0;
-    // Coordinates read from files are far within the range of int64_t once the box is known to be small.
+    // A small box does not ensure a small position, so `centre` must be in the range of int64_t, too.
     if (!(box.x * box.y * box.z <= MAX_VOXELS) || !glm::all(glm::lessThan(glm::abs(centre), glm::dvec3(1e18))))
         fail("the ball of radius ", digits_of(radius), " at ", digits_of(position),
              " has a bounding box of more than 2147483648 voxels; expected a smaller radius");
