@@ -6,7 +6,7 @@
 
 namespace shvr {
 
-/// Milliseconds since 1970-01-01 00:00 UTC, without leap seconds. It jumps where the clock is set.
+/// Milliseconds since 1970-01-01 00:00 UTC, without leap seconds. Jumps when the system clock is set.
 int64_t wall_clock_ms();
 
 /// ISO 8601 with milliseconds: "2026-11-29T01:33:25.120Z". Years from 0 to 9999; other times are clamped.

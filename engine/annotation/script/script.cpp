@@ -19,7 +19,7 @@ namespace {
 
 constexpr int64_t MAX_SCRIPT_BYTES = int64_t{256} << 20;
 constexpr int64_t MAX_COUNT = int64_t{1} << 62;
-/// Limits far larger than any volume, but small enough that their squares do not overflow.
+/// Limits far above the size of any volume, yet small enough that their squares do not overflow.
 const NumberRange COORDINATE{-1e12, 1e12};
 const NumberRange LENGTH{5e-324, 1e12, "a number above 0, up to 1e12"};
 
@@ -33,7 +33,7 @@ uint8_t read_group(const JsonNode& node)
     return uint8_t(node.whole(0, 255));
 }
 
-/// Refuses all keys but these, "op", and the "time" of a log's lines, which replays ignore.
+/// Refuses all keys except `keys`, "op", and the "time" in lines of a log, which replays ignore.
 void allow(const JsonNode& line, std::vector<std::string_view> keys)
 {
     keys.insert(keys.begin(), "op");
@@ -41,7 +41,7 @@ void allow(const JsonNode& line, std::vector<std::string_view> keys)
     line.allow(keys);
 }
 
-/// Returns the one of `keys` that is present.
+/// Returns which of `keys` is present; refuses lines with none or several.
 std::string_view one_of(const JsonNode& line, std::initializer_list<std::string_view> keys)
 {
     std::string_view found;
@@ -96,7 +96,7 @@ NodeOp read_node(const JsonNode& line)
     return op;
 }
 
-/// The search distance that accompanies a key such as "near"; `key` is the key of the position.
+/// Reads the search distance "within"; `key`, the key of the position, must be "near" or begin with it.
 std::optional<double> read_within(const JsonNode& line, std::string_view key)
 {
     const JsonNode within = line["within"];
@@ -145,7 +145,7 @@ RadiusOp read_radius(const JsonNode& line)
     } else if (of.exists()) {
         line.refuse_because("key of is given without group; expected both, or neither for what is selected");
     }
-    // An internode without its own radius tapers from node to node.
+    // A radius of null makes internodes taper from node to node.
     const bool tapers = op.of == RadiusOp::Of::internodes && line["radius"].is_null();
     if (!tapers) op.radius_voxels = line["radius"].number(LENGTH);
     return op;
@@ -195,7 +195,7 @@ int read_count(const JsonNode& line)
     return int(line["count"].whole(1, 1, 1000000000));
 }
 
-/// The group whose number a key such as "3" states; null if the key is not a group's number.
+/// The group that a key such as "3" names; null if the key is not the number of a group.
 std::optional<uint8_t> group_of(const std::string& key)
 {
     uint8_t group = 0;
@@ -248,7 +248,7 @@ GroupOp read_group_op(const JsonNode& line)
     return {read_group(line["group"])};
 }
 
-/// An operation and its reader. Messages list the more common operations first.
+/// An operation and its reader, the more common ones first, because messages list them in this order.
 struct OpReader {
     std::string_view name;
     ScriptOp (*read)(const JsonNode& line);
@@ -272,7 +272,7 @@ constexpr OpReader OPS[] = {
     {"expect", [](const JsonNode& line) -> ScriptOp { return read_expect(line); }},
 };
 
-/// An operation on groups, by the keys of its row.
+/// Reads an operation on groups, with the keys that its row visits.
 template <size_t INDEX = 0>
 ScriptOp read_operation(const JsonNode& line, std::string_view name)
 {

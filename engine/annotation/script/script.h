@@ -1,6 +1,6 @@
 #pragma once
 // Scripts of `shvr annotate`: one JSON object per line; blank lines and lines that start with // are skipped. The
-// window sends the same structs, so keys, menus, scripts and a stylus share one language.
+// window makes the same structs from keys and menus, so menus, scripts and a stylus share one set of operations.
 
 #include <filesystem>
 #include <functional>
@@ -39,11 +39,11 @@ template <class... Operations, class... Ops>
 struct WithOperations<std::variant<Operations...>, Ops...> {
     using Type = std::variant<Ops..., Operations...>;
 };
-/// The operations on groups (engine/annotation/operations) follow from their table.
+/// The operations on groups are added from their table (engine/annotation/operations).
 using ScriptOp = WithOperations<GroupOperation, PaintOp, NodeOp, SelectOp, SelectSegmentOp, DeselectOp, LinkOp, MoveOp,
                                 DeleteOp, GroupOp, RadiusOp, UndoOp, RedoOp, SaveOp, RevertOp, ExpectOp>::Type;
 
-/// Whether the operation changes the work, or its files.
+/// Whether the operation changes the work or writes files of the work.
 bool changes_work(const ScriptOp& op);
 
 struct ScriptLine {
@@ -55,17 +55,17 @@ class JsonNode;
 
 /// The names of operations, the more common ones first.
 std::vector<std::string_view> script_op_names();
-/// Parses a line whose key "op" must be one of those names. Fails as read_script does.
+/// Parses a line whose key "op" must be one of those names. Fails like `read_script`.
 ScriptOp read_script_op(const JsonNode& line);
 /// The line that parses as this operation.
 std::string line_of(const ScriptOp& op);
 
-/// Calls `take` with each non-empty line, whatever its operation, and its line number (from 1); both are valid during
-/// the call. "-" is standard input, which is read to its end, as pipes are. Fails if a line is not a JSON object.
+/// Calls `take` with each non-empty line, of any operation, and its line number (from 1); both are valid only during
+/// the call. "-" is standard input, which, like a pipe, is read to its end first. Fails if a line is not a JSON object.
 void for_each_line(const std::filesystem::path& path,
                    const std::function<void(const JsonNode& line, int number)>& take);
 
-/// Reads and checks the whole script before anything runs. Errors name file, line, key, value and what was expected;
+/// Reads and checks the whole script before anything is run. Errors name file, line, key, value and expected value;
 /// unknown keys and operations are refused.
 std::vector<ScriptLine> read_script(const std::filesystem::path& path);
 /// "standard input" for "-".

@@ -13,7 +13,7 @@ std::string text_of(const glm::dvec3& point)
     return sentence('[', digits_of(point.x), ',', digits_of(point.y), ',', digits_of(point.z), ']');
 }
 
-/// A line built key by key. Keys and texts are plain words, so nothing is escaped.
+/// A line of JSON, built key by key. Keys and texts are plain words, so they need no escaping.
 class Line {
 public:
     explicit Line(std::string_view op) : text_(sentence("{\"op\":\"", op, '"')) {}
@@ -112,7 +112,7 @@ std::string line(const ExpectOp& op)
     return line;
 }
 
-/// Operations on groups are written by the keys of their rows.
+/// Writes an operation on groups, with the keys that its row visits.
 template <class Op>
 requires IS_GROUP_OPERATION<Op> std::string line(const Op& op)
 {
