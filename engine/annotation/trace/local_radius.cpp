@@ -10,10 +10,10 @@ namespace shvr {
 namespace {
 
 constexpr size_t DIRECTIONS = 200;  ///< about 9 degrees apart
-/// Smallest growth of the radius that counts; growth below a thousandth is noise from the finite set of directions.
+/// Smallest relative growth of the radius that counts; a growth below 0.1 % is noise of the finite set of directions.
 constexpr double NOTICEABLE = 1.001;
 
-/// Evenly spread over the sphere: a Fibonacci lattice.
+/// Directions spread evenly over the sphere (a Fibonacci lattice).
 const std::array<glm::dvec3, DIRECTIONS>& directions()
 {
     static const std::array<glm::dvec3, DIRECTIONS> ALL = [] {
@@ -38,7 +38,7 @@ public:
           step_(0.5 * std::min({spacing.x, spacing.y, spacing.z}))
     {}
 
-    /// Distance from a point to the nearest point outside; at most `most`, and 0 outside.
+    /// Distance from a point to the nearest point outside the structure, at most `most`; 0 if the point is outside.
     double depth_of(const glm::dvec3& point) const
     {
         if (density(point) < threshold_) return 0.0;
@@ -70,8 +70,8 @@ private:
     double most_, step_;
 };
 
-/// Climbs in decreasing steps from `point` to a local maximum of the ball's radius, as long as the ball contains the
-/// point and `may_be` allows the ball's centre. Returns the centre in the unit of the spacing.
+/// Climbs in decreasing steps from `point` to a local maximum of the ball's radius. The ball must contain `point`, and
+/// `may_be` must allow its centre. Returns the centre in the unit of the spacing.
 template <class MayBe>
 std::optional<LocalBall> largest_ball(const Structure& structure, const glm::dvec3& point, double most,
                                       const MayBe& may_be)
@@ -134,8 +134,8 @@ std::optional<LocalBall> ball_behind(const DensityAt& density_at, double thresho
     const auto is_near_sight = [&](const glm::dvec3& point) {
         return glm::length(point - from - glm::dot(point - from, direction) * direction) <= aside;
     };
-    // The visible point is where a wall is steepest; the middle of the wall may be one voxel nearer to the eye. Grains
-    // on the line that are thinner than a voxel are noise and are ignored.
+    // The search starts in front of the visible point: it is where a wall is steepest, and the wall's middle may be a
+    // voxel nearer to the eye. Grains on the line that are thinner than a voxel are skipped as noise.
     double begin = -2.0 * structure.finest();
     while (begin <= most) {
         while (begin <= most && !structure.contains(from + begin * direction)) begin += structure.step();

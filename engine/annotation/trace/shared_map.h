@@ -1,10 +1,10 @@
 #pragma once
-// An ordered map whose keys are numbers, with copy-on-write pages of 256 consecutive numbers. Copying costs only the
-// table of pages; changing a page that another copy may see duplicates the page first.
+// An ordered map from numbers to values, with copy-on-write pages of 256 consecutive numbers. Copying costs only the
+// table of pages; before a page that another copy may share is changed, it is duplicated.
 //
-// Whether a page may be changed in place is decided by a mark, not by a reference count: copying gives both sides a new
-// mark, so that a page that was ever shared stays as it is. One thread changes a map; copies may be read, copied and
-// destroyed on others.
+// A mark, not a reference count, decides whether a page may be changed in place: copying gives both maps new marks, so
+// neither changes a page that was shared before. One thread changes a map; other threads may read, copy and destroy
+// copies.
 
 #include <algorithm>
 #include <atomic>
@@ -116,7 +116,7 @@ public:
     }
     bool contains(uint32_t number) const { return find(number) != end(); }
 
-    /// Mutable access to the value of a number; created if missing. Valid until the map changes or is copied.
+    /// Mutable access to the value of a number, which is created if missing. Valid until the map changes or is copied.
     Value& operator[](uint32_t number)
     {
         Page& page = own(number / PAGE_NUMBERS);
@@ -152,7 +152,7 @@ private:
                                             [](const Entry& entry, uint32_t wanted) { return entry.first < wanted; });
         return size_t(found - entries.begin());
     }
-    /// Returns a page that no other copy sees, creating it if necessary.
+    /// Returns a page that no other copy shares, duplicating or creating it if necessary.
     Page& own(uint32_t index)
     {
         std::shared_ptr<const Page>& held = pages_[index];

@@ -104,7 +104,7 @@ private:
     }
     glm::dvec3 at(const glm::dvec3& voxel) const { return voxel * defaults_.spacing; }
     double length(double voxels) const { return voxels * defaults_.spacing.x; }
-    /// Tubes may extend outside the volume, but nodes farther outside are errors in the coordinates.
+    /// Nodes may lie outside the volume by their radius, since tubes may extend there; nodes further out are errors.
     void check_place(const glm::dvec3& voxel, double radius) const
     {
         const glm::dvec3 size(defaults_.size), spacing = defaults_.spacing;

@@ -30,7 +30,7 @@ const TraceSelection& selected(const TraceGraph& trace)
     return trace.selection();
 }
 
-/// Wraps the changes in a record that deselects and one that selects.
+/// Puts a record that deselects before the changes, and one that selects after them.
 std::vector<TraceChange> with_selection(const TraceGraph& trace, std::vector<TraceChange> changes,
                                         TraceSelection selection)
 {

@@ -25,7 +25,7 @@ std::string extension_of(const std::filesystem::path& path)
     fail(path.string(), ": has the extension ", in_quotes(path.extension().string()), "; expected ", expected);
 }
 
-/// Whether two vectors are equal, up to the rounding of different programs.
+/// Whether two vectors are equal, up to the rounding of other programs.
 bool is_equal(const glm::dvec3& a, const glm::dvec3& b)
 {
     return glm::all(glm::lessThanEqual(glm::abs(a - b), 1e-6 * glm::abs(b)));

@@ -16,7 +16,7 @@ namespace shvr {
 namespace {
 
 constexpr size_t MAX_NODES = 4'000'000;
-/// Far beyond any volume in any unit, and far below where squares overflow.
+/// Limit far beyond any volume in any unit, yet small enough that squares do not overflow.
 constexpr double FARTHEST = 1e15;
 
 std::optional<double> finite_of(std::string_view word)
@@ -223,8 +223,8 @@ void TraceReader::to_volume_space(const std::optional<TraceSpace>& expected)
     TraceSpace space{.spacing = stated.spacing ? *stated.spacing : expected->spacing,
                      .directions = *stated.directions,
                      .origin = *stated.origin};
-    // Tolerance between the file's exact position and the one computed from the physical position: the rounding of
-    // numbers of this size, amplified by nearly coplanar axes.
+    // Tolerance between the file's exact position and the position computed from the physical one: rounding errors of
+    // numbers of this size, amplified if the axes are nearly coplanar.
     const double rounding = 1e-14 / glm::determinant(space.directions);
     std::vector<TraceNodeChange> changes;
     for (const auto& [number, node] : trace.nodes()) {

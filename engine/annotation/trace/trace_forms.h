@@ -1,6 +1,6 @@
 #pragma once
-// The formats behind trace_file.h, one pair of functions each, and their shared helpers. Text in, text out: no files.
-// Any thread may call these.
+// The formats of trace_file.h, a writer and a reader for each, and shared helpers. These functions convert from and to
+// text; they do not access files. Any thread may call them.
 
 #include <map>
 #include <string>
@@ -12,12 +12,12 @@
 
 namespace shvr {
 
-/// The input of a writer: a trace whose positions are in the space that the file will state.
+/// The input of a writer: a trace whose positions are already in the space that the file will state.
 struct TraceWriting {
     const TraceGraph& trace;
     const TraceSpace& space;
     Positions positions = Positions::volume;
-    const TraceGraph* exact = nullptr;  ///< the same trace in volume space, if `positions` are physical
+    const TraceGraph* exact = nullptr;  ///< the same trace in volume space; given if `positions` are physical
 };
 
 std::string write_trace_text(const TraceWriting& writing);
@@ -25,7 +25,7 @@ std::string write_trace_swc(const TraceWriting& writing, Loops loops, std::vecto
 std::string write_trace_graphml(const TraceWriting& writing);
 std::string write_trace_rsml(const TraceWriting& writing, Loops loops, std::vector<std::string>& notes);
 
-/// A file's statements about its volume; each may be missing.
+/// The volume's properties that a file states; each may be missing.
 struct StatedSpace {
     std::optional<Size3> size;
     std::optional<glm::dvec3> spacing;
@@ -38,14 +38,14 @@ struct StatedSpace {
 
 class TraceReader;
 /// Lines that begin with "#": first the space of the positions, in words and in the form that `read_space_comment`
-/// reads, then unit, spacing and size.
+/// reads, then the unit, spacing and size.
 std::string comments_of(const TraceWriting& writing);
-/// `comment` begins with "#". Since files of other programs have comments of their own, "space" counts only if it is
-/// followed by "physical" or "volume", and a place counts only after "space physical".
+/// Reads a comment, which begins with "#". Since comments of other programs may use the same words, "space" counts only
+/// before "physical" or "volume", and a place only after a comment "space physical".
 void read_space_comment(TraceReader& reader, const std::string& where, std::string_view comment);
 
-/// Collects nodes and internodes from a file, refuses malformed traces, and skips oddities. `where` begins every
-/// message.
+/// Collects the nodes and internodes of a file; refuses malformed traces, and skips oddities. Every message begins with
+/// `where`.
 class TraceReader {
 public:
     explicit TraceReader(std::string file) : file_(std::move(file)) {}
@@ -61,16 +61,16 @@ public:
     Size3 size(const std::string& where, std::string_view text) const;
     glm::dvec3 spacing(const std::string& where, std::string_view text) const;
 
-    /// Handles a statement that `statements_of` writes; ignores other names. "space" must be "physical" or "volume".
+    /// Reads a statement as written by `statements_of`; ignores unknown names. "space" must be "physical" or "volume".
     void state(const std::string& where, std::string_view name, std::string_view value);
-    /// Converts positions to volume space if the file states that they are physical. `expected` supplies the spacing if
-    /// the file does not state it.
+    /// Converts positions to volume space if the file states that they are physical. If the file states no spacing,
+    /// uses the spacing of `expected`.
     void to_volume_space(const std::optional<TraceSpace>& expected);
 
-    /// Records an oddity that was skipped, and how it was handled ("left out"). Oddities are of one kind if their
-    /// messages state the same expectation; only the first of each kind is kept, with the number of its kind.
+    /// Records an oddity that was skipped, and how it was handled ("left out"). Oddities with the same expectation in
+    /// their messages are of one kind; only the first of each kind is kept, with the number of oddities of that kind.
     void read_past(const Error& odd, const std::string& done);
-    /// Runs `read`; leaves out an element that it refuses.
+    /// Runs `read`, which reads an element. If `read` fails, the element is left out.
     template <class Read>
     void leave_out_if_odd(const Read& read)
     {
@@ -80,19 +80,19 @@ public:
             read_past(odd, "it is left out");
         }
     }
-    /// Fails with the first oddity if nothing but oddities was read.
+    /// If everything read was an oddity, fails with the first one.
     void refuse_if_nothing_is_left() const;
     /// One sentence for each kind of oddity.
     std::vector<std::string> warnings() const;
     void warn(const std::string& warning) { warnings_.push_back({warning, {}, 1}); }
 
-    /// Converts lengths to the unit of `expected`, if the file states another unit and both are units of length.
+    /// Converts lengths to the unit of `expected` if the file states another unit and both are units of length.
     void to_unit_of(const std::optional<TraceSpace>& expected);
 
     StatedSpace stated{};
     TraceGraph trace{};
-    std::map<uint32_t, glm::dvec3> exact{};  ///< positions in volume space, for nodes whose file also holds physical
-                                             ///< ones; used if both agree
+    std::map<uint32_t, glm::dvec3> exact{};  ///< positions in volume space of nodes whose file also holds physical
+                                             ///< positions; used if the two agree
 
 private:
     struct Oddity {
@@ -109,16 +109,16 @@ void read_trace_graphml(TraceReader& reader, std::string_view text);
 /// Converts lengths to the unit of `volume`, if both units are units of length.
 void read_trace_rsml(TraceReader& reader, std::string_view text, const std::optional<TraceSpace>& volume);
 
-/// A trace as trees: every node once, parents before children.
+/// A trace as trees: contains every node once, parents before children.
 struct TraceTrees {
     struct Place {
         uint32_t node;
         std::optional<uint32_t> internode;  ///< to the parent
     };
-    std::vector<Place> places;         ///< depth first; roots (smallest numbers first) have no internode
+    std::vector<Place> places;         ///< depth first; roots (by ascending number) have no internode
     std::vector<uint32_t> left_out{};  ///< internodes that close loops, ascending
 };
-/// Fails if there are loops and `loops` does not allow breaking them; `form` is for messages ("SWC").
+/// Fails if the trace has loops and `loops` does not allow to break them open. `form`: format for messages ("SWC").
 TraceTrees trees_of(const TraceGraph& trace, Loops loops, const char* form, std::vector<std::string>& notes);
 
 }  // namespace shvr

@@ -1,5 +1,5 @@
-// GraphML (Brandes et al. 2002; http://graphml.graphdrawing.org): nodes with x, y, z, radius and group, edges with a
-// group, and data of the graph for everything else in a trace. Numbers are in the ids: node "n7", edge "e3".
+// GraphML (Brandes et al. 2002; http://graphml.graphdrawing.org): nodes have x, y, z, radius and group, edges a group,
+// and the graph itself has data for the rest of a trace. Ids contain the numbers: node "n7", edge "e3".
 
 #include <charconv>
 #include <map>
@@ -21,7 +21,7 @@ void add_data(pugi::xml_node parent, const char* key, const std::string& value)
     data.text().set(value.c_str());
 }
 
-/// "n7" -> 7; accepts only the canonical spelling.
+/// Returns 7 for "n7"; null unless the id has this form, without leading zeros.
 std::optional<uint32_t> number_in(std::string_view id, char letter)
 {
     uint32_t number = 0;
@@ -205,7 +205,7 @@ private:
     std::map<std::string, uint32_t> numbers_;  ///< id of a node -> its number
 };
 
-/// Declares the attributes of the elements that follow.
+/// Declares the attributes of nodes, edges and the graph.
 void add_keys(pugi::xml_node& root)
 {
     constexpr const char* KEYS[][3] = {{"x", "node", "double"},
@@ -234,7 +234,7 @@ void add_keys(pugi::xml_node& root)
     }
 }
 
-/// Adds the data that belong to the graph as a whole.
+/// Adds the data of the graph as a whole: the space of its positions, and properties of the volume.
 void add_statements(pugi::xml_node& graph, const TraceWriting& writing)
 {
     const TraceGraph& trace = writing.trace;
@@ -252,7 +252,7 @@ void add_statements(pugi::xml_node& graph, const TraceWriting& writing)
     add_data(graph, "next_internode", std::to_string(trace.next_internode()));
 }
 
-/// Writes elements of the graph one at a time, since a whole document in memory takes 1.6 KB per node.
+/// Writes elements of the graph one by one, because the whole document would take 1.6 KB of memory per node.
 class ElementWriter {
 public:
     explicit ElementWriter(std::string& text) { writer_.text.swap(text); }
@@ -267,7 +267,7 @@ public:
     static constexpr const char* INDENT = " ";
 
 private:
-    static constexpr unsigned DEPTH = 2;  ///< depth of elements inside graphml and graph
+    static constexpr unsigned DEPTH = 2;  ///< depth of elements, which lie in "graphml" and "graph"
     pugi::xml_document document_;
     StringWriter writer_;
 };
@@ -282,7 +282,7 @@ void write_nodes(ElementWriter& writer, const TraceWriting& writing)
         add_data(element, "z", digits_of(node.position.z));
         add_data(element, "radius", digits_of(node.radius));
         add_data(element, "group", std::to_string(node.group));
-        // Writes the exact positions: those computed from the values above would lack the last bits.
+        // Positions computed from the values above would lack the last bits, so exact positions are written, too.
         if (writing.exact) {
             const glm::dvec3& exact = writing.exact->node(number).position;
             if (position_of(writing.space, node.position) != exact)

@@ -65,8 +65,8 @@ void TraceIndex::Tree::split(size_t begin, size_t end)
     split(middle + 1, end);
 }
 
-/// Visits every point that is at most `most_squared` away, and possibly other points. `most_squared` may shrink during
-/// the search.
+/// Visits all points that are at most `most_squared` away, and possibly others. The visitor may decrease `most_squared`
+/// during the search.
 template <class Visit>
 void TraceIndex::search(const glm::dvec3& position, const double& most_squared, const Visit& visit) const
 {
@@ -88,7 +88,7 @@ void TraceIndex::search(const glm::dvec3& position, const double& most_squared, 
         const double beyond = position[tree_->axes[middle]] - point.position[tree_->axes[middle]];
         const Range left{range.begin, middle, beyond > 0.0 ? beyond * beyond : 0.0};
         const Range right{middle + 1, range.end, beyond < 0.0 ? beyond * beyond : 0.0};
-        // The nearer side is searched first, so that it shrinks the search radius for the other.
+        // The nearer side is pushed last, so it is searched first and shrinks the search radius for the other side.
         ranges.push_back(beyond > 0.0 ? left : right);
         ranges.push_back(beyond > 0.0 ? right : left);
     }

@@ -22,7 +22,7 @@ namespace {
 constexpr uint32_t SIDES = 16;
 constexpr size_t CHUNK_BYTES = size_t{1} << 20;
 
-/// A sphere of radius 1: an icosahedron subdivided once, with 42 vertices, 80 triangles.
+/// A sphere of radius 1: an icosahedron subdivided once, with 42 vertices and 80 triangles.
 TracePart unit_ball()
 {
     const double p = (1.0 + std::sqrt(5.0)) / 2.0;

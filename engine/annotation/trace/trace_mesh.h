@@ -1,13 +1,13 @@
 #pragma once
-// A trace as tubes of triangles: a ball for each node and a truncated cone for each internode, each closed and
-// counter-clockwise seen from outside. Vertices lie on the true surface, so balls and cones are slightly too small (a
-// cone's cross-section by 2.6 %, a ball's volume by 12 %). Parts overlap where they meet.
+// A trace as tubes of triangles: a ball for each node and a truncated cone for each internode. Each is closed, and its
+// triangles are counter-clockwise seen from outside. Vertices lie on the true surface, so the meshes are slightly too
+// small (a cone's cross-section by 2.6 %, a ball's volume by 12 %). Parts overlap where they meet.
 //
 //   .obj   a group "group_N" for each colour group; text
 //   .ply   binary; coordinates of 64 bits, since volumes may lie far from 0; each face has the property `group`
 //
-// Positions are in physical space unless volume space is requested (trace_space.h); comments of the file state the
-// space, place and unit. "SPACE=LPS" is how 3D Slicer writes and reads the axes of a mesh. Any thread may call these.
+// Positions are in physical space unless volume space is requested (trace_space.h). Comments in the file state the
+// space, place and unit; "SPACE=LPS" is 3D Slicer's notation for a mesh's axes. Any thread may call these.
 
 #include <filesystem>
 #include <vector>

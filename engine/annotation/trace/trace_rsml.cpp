@@ -1,7 +1,7 @@
 // RSML, the Root System Markup Language (Lobet et al. 2015, Plant Physiology 167; https://rootsystemml.github.io):
-// every tree is a plant; its first axis follows the longest path from the root, and each side branch is a root nested
-// in the root it leaves, beginning at the branch. Geometry is in pixels: voxels along x, on all three axes, with
-// `resolution` pixels per unit. Our own metadata state the space and, in `unit`, the position of the volume.
+// every tree is a plant. Its first axis follows the longest path from the root; each side branch is a root nested in
+// its parent axis and begins at the branch. Geometry is in pixels (voxels along x, on all axes), `resolution` pixels
+// per unit. Metadata of SHVR's own state the space and, measured in `unit`, the position of the volume.
 
 #include <algorithm>
 #include <map>
@@ -14,10 +14,10 @@ namespace {
 
 struct Branch {
     uint32_t node;
-    double reach;  ///< length of the longest path from here to a leaf, including the internode that leads here
+    double reach;  ///< length of the longest path to a leaf, including the internode to this node
 };
 
-/// The children of each node, sorted by the longest path through each child, longest first.
+/// The children of each node, sorted by the length of the longest path through each child, longest first.
 std::map<uint32_t, std::vector<Branch>> branches_of(const TraceGraph& trace, const TraceTrees& trees)
 {
     std::map<uint32_t, std::vector<Branch>> branches;
@@ -39,7 +39,7 @@ void add_text(pugi::xml_node parent, const char* name, const std::string& text)
     parent.append_child(name).text().set(text.c_str());
 }
 
-/// Adds an axis, from the branch (or root) where it begins.
+/// Adds an axis, with its nodes from the branch (or root) at which it begins.
 void add_axis(pugi::xml_node root, const TraceGraph& trace, const std::vector<uint32_t>& nodes, double pixel)
 {
     pugi::xml_node properties = root.append_child("properties");
@@ -100,7 +100,7 @@ std::string write_trace_rsml(const TraceWriting& writing, Loops loops, std::vect
             while (!branches.at(axis.nodes.back()).empty())
                 axis.nodes.push_back(branches.at(axis.nodes.back()).front().node);
             add_axis(root, trace, axis.nodes, space.spacing.x);
-            // Skips the node at which a side axis begins: that node belongs to the axis it branches off from.
+            // Skips the node at which a side axis begins, because that node belongs to the parent axis.
             for (size_t i = given - 1; i < axis.nodes.size(); ++i) {
                 const std::vector<Branch>& children = branches.at(axis.nodes[i]);
                 for (size_t child = 1; child < children.size(); ++child)

@@ -1,11 +1,11 @@
 // Reads RSML (trace_rsml.cpp writes it): the metadata's unit and resolution, and for each root its polyline, its
-// functions "diameter" and "group" (their domain is the polyline, the length or uniform), and its child roots. Other
-// elements and attributes are ignored, since other programs write many. A nested root begins at the parent's node where
-// its first point lies; otherwise it is joined to the nearest node of the parent. All numbers are pixels
+// functions "diameter" and "group" (with the domain polyline, length or uniform), and its child roots. Other elements
+// and attributes are ignored, since other programs write many. A nested root begins at the parent's node at its first
+// point; if there is none, it is joined to the nearest node of the parent. All numbers are pixels
 // (https://rootsystemml.github.io/format/metadata): `resolution` pixels make one `unit`. If the unit is "pixel", or
 // neither is stated, a pixel is a voxel along x. A missing unit is the volume's, and a missing resolution is 1. Lengths
-// are converted to the volume's unit. Without a diameter the radius is one pixel. Positions declared physical by the
-// metadata are converted once the whole file is read.
+// are converted to the volume's unit. Without a diameter, the radius is one pixel. If the metadata state that positions
+// are physical, these are converted once the whole file is read.
 
 #include <algorithm>
 #include <cmath>
@@ -59,7 +59,7 @@ private:
     struct Axis {
         std::optional<uint32_t> last;
         bool is_parent = false;
-        TraceIndex index;  ///< index of all nodes, if nested roots need it
+        TraceIndex index;  ///< all nodes by position, if nested roots need them
     };
     struct Waiting {
         pugi::xml_node root;
@@ -74,14 +74,14 @@ private:
         read_space(metadata);
         if (text.empty()) return;
         const std::optional<double> resolution = number_of(text);
-        // Limits far beyond the resolution of any scan, yet close enough to 1 that nothing overflows.
+        // Limits far beyond the resolution of any scan, yet such that computations cannot overflow.
         if (!resolution || !(*resolution >= 1e-12) || !(*resolution <= 1e12))
             fail(reader_.file(), ": metadata: resolution is ", in_quotes(text),
                  "; expected pixels to the unit, a number from 1e-12 to 1e12");
         pixels_per_unit_ = *resolution;
     }
 
-    /// A unit that cannot be converted is kept; it is refused later if it differs from the volume's.
+    /// Keeps a unit that cannot be converted. It is refused later, unless it is the volume's unit.
     void take_unit(const std::string& unit)
     {
         const std::string lower = lower_case(unit);
@@ -115,7 +115,7 @@ private:
 
     double length(double pixels) const { return pixels / pixels_per_unit_ * per_unit_; }
 
-    /// Visits roots in document order and without recursion, since nesting may be deep.
+    /// Visits roots in document order, with a stack instead of recursion, since nesting may be deep.
     void read_plant(const pugi::xml_node& plant)
     {
         std::vector<Waiting> waiting;
@@ -135,8 +135,8 @@ private:
             if (name_of(child) == "root") waiting.push_back({child, axis});
     }
 
-    /// A function's values at the points of a polyline, at the distances `along` it; empty without such a function. For
-    /// the domains length and uniform, values are interpolated linearly; a group is that of the nearer sample.
+    /// The values of a function at the points of a polyline, at the distances `along` it; empty if there is no such
+    /// function. The domains length and uniform are interpolated linearly; a group is taken from the nearer sample.
     std::vector<std::string> samples_of(const pugi::xml_node& root, const std::string& where, std::string_view name,
                                         const std::vector<double>& along)
     {
@@ -170,7 +170,7 @@ private:
         return {};
     }
 
-    /// Returns an empty list if a sample or its position cannot be read as a number.
+    /// Returns an empty list if a sample's value or position is not a finite number.
     static std::vector<std::string> values_along(const std::vector<pugi::xml_node>& samples, bool is_uniform,
                                                  bool is_linear, const std::vector<double>& along)
     {
@@ -200,7 +200,7 @@ private:
         return values;
     }
 
-    /// Returns the distance of each point along the polyline, in the file's unit. Malformed points are refused later.
+    /// Returns each point's distance along the polyline, in the file's unit. Malformed points are refused elsewhere.
     static std::vector<double> distances_along(const std::vector<pugi::xml_node>& points)
     {
         std::vector<double> along;

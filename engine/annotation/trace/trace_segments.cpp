@@ -7,7 +7,7 @@ namespace shvr {
 
 namespace {
 
-/// Follows the segment from `internode` through `node` to its end, or to the internode it began with.
+/// Extends the segment beyond its last node, up to its end or, in a loop, back to its first internode.
 void extend(const TraceGraph& trace, const std::set<uint32_t>& stops, TraceSegment& segment)
 {
     const uint32_t first = segment.internodes.front();

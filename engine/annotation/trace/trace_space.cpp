@@ -24,7 +24,7 @@ TraceSpace turned_round(TraceSpace space)
     return space;
 }
 
-/// Whether two spaces have the same place, up to the rounding of programs that store numbers as 32-bit floats.
+/// Whether two spaces have the same place, up to the rounding of numbers that other programs store as 32-bit floats.
 bool is_in_place(const TraceSpace& found, const TraceSpace& expected)
 {
     constexpr double MAX_TURN = 1e-3, MAX_VOXELS = 0.05, ROUNDING = 1e-6;

@@ -1,10 +1,10 @@
 #pragma once
-// The volume that annotation belongs to, and its position in space. Any thread may call these.
+// The volume that an annotation belongs to, and its place in space. Any thread may call these.
 //
-// Volume space, in which traces are stored: voxel * spacing, from the outer corner of voxel 0. Physical space, in which
-// other programs show volumes and annotation: the centre of voxel 0 is at `origin`, and the axes run along the columns
-// of `directions`. So physical = origin + directions * (position - spacing / 2). If no place is stated, the defaults
-// are those of other programs: origin 0, axes along those of space.
+// Traces are stored in volume space: voxel * spacing, measured from the outer corner of voxel 0. Other programs show
+// volumes and annotation in physical space: the centre of voxel 0 is at `origin`, and the volume's axes run along the
+// columns of `directions`, so physical = origin + directions * (position - spacing / 2). If a file states no place, the
+// defaults of other programs apply: origin 0, and axes along those of physical space.
 
 #include <string>
 #include <utility>
@@ -25,7 +25,7 @@ struct TraceSpace {
 };
 TraceSpace space_of(const VolumeInfo& volume);
 
-/// The space that the positions of a file are in.
+/// The space in which the positions of a file are stated.
 enum class Positions { volume, physical };
 
 glm::dvec3 physical_of(const TraceSpace& space, const glm::dvec3& position);
@@ -33,12 +33,12 @@ glm::dvec3 physical_of(const TraceSpace& space, const glm::dvec3& position);
 glm::dvec3 position_of(const TraceSpace& space, const glm::dvec3& physical);
 
 /// Returns a text like "origin 1 2 3, axes ..., of LPS; expected origin ...". Empty if both have the same place, up to
-/// a twentieth of a voxel, or if one of them states no place.
+/// a twentieth of a voxel, or if either states no place.
 std::string why_elsewhere(const TraceSpace& found, const TraceSpace& expected);
 
-/// Describes the space of a file's positions, for a comment in the file; without a line end.
+/// Describes the space of a file's positions, for a comment in the file. The text has no line end.
 std::string in_words(const TraceSpace& space, Positions positions);
-/// "space physical", "frame LPS", ...: the statements that a reader needs, as pairs of name and value.
+/// The statements about the space that a reader needs, as pairs of name and value: "space physical", "frame LPS", ....
 std::vector<std::pair<const char*, std::string>> statements_of(const TraceSpace& space, Positions positions);
 
 }  // namespace shvr

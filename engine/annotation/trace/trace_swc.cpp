@@ -1,6 +1,6 @@
 // SWC (Cannon et al. 1998, "An on-line archive of reconstructed hippocampal neurons"): one sample per line, "n type x y
-// z radius parent", parents before children, parent -1 for a root. Written as SWC+ and the standardised form require:
-// numbers from 1 without gaps. The type holds the colour group, since no neurite type fits plants.
+// z radius parent", parents before children, parent -1 for a root. Samples are numbered from 1 without gaps, as SWC+
+// and the standardised form require. The type holds the colour group, since no neurite type fits plants.
 
 #include <cmath>
 #include <map>
@@ -20,7 +20,7 @@ struct Sample {
     std::optional<int64_t> parent;
 };
 
-/// Reads "# unit um", which SHVR writes, and "# SCALE 1 1 1", which archives of neurons write.
+/// Reads "# unit um", as written by SHVR, and "# SCALE 1 1 1", as found in archives of neurons.
 void read_comment(TraceReader& reader, const std::string& where, std::string_view comment)
 {
     read_space_comment(reader, where, comment);
@@ -46,7 +46,7 @@ std::optional<int64_t> number_of_sample(TraceReader& reader, const std::string& 
     return int64_t(*number);
 }
 
-/// Returns a sample's type as a group. Any number may be a neurite's type; a type that is no group is dropped.
+/// Returns a sample's type as a group. A neurite's type may be any number; types that are not a group are dropped.
 uint8_t group_of(TraceReader& reader, const std::string& where, std::string_view word)
 {
     try {
@@ -127,7 +127,7 @@ void read_trace_swc(TraceReader& reader, std::string_view text)
                 reader.add_internode(where, {parent->second, sample.node, reader.trace.node(sample.node).group});
             });
     }
-    // Every sample has at most one parent, so a loop is a sample that is its own ancestor.
+    // Every sample has at most one parent, so a loop always means that a sample is its own ancestor.
     std::vector<std::string> notes;
     try {
         trees_of(reader.trace, Loops::refuse, "SWC", notes);

@@ -16,13 +16,13 @@ bool is_inner(const TraceGraph& trace, uint32_t node)
     return trace.internodes_of(node).size() == 2;
 }
 
-/// Walks along a segment, from an inner node over one of its internodes.
+/// Walks along a segment, starting at an inner node over one of its two internodes.
 class Walker {
 public:
     Walker(const TraceGraph& trace, uint32_t node, uint32_t internode)
         : trace_(trace), node_(node), internode_(internode)
     {}
-    /// Advances to the next node, which may be the last.
+    /// Advances to the next node. At the end of the segment, this is its last node.
     void step()
     {
         node_ = trace_.internode(internode_).other(node_);
@@ -39,11 +39,11 @@ private:
 };
 
 struct Closed {
-    bool is_closed = false;  ///< the node lies on a loop of inner nodes only
+    bool is_closed = false;  ///< the node lies on a loop that consists of inner nodes only
     bool has_other = false;  ///< `other` lies on the same loop
 };
 
-/// Walks in both directions at once, so the number of steps is the distance to the nearer end of the segment.
+/// Walks in both directions alternately, so the cost depends on the distance to the nearer end of the segment.
 Closed closed_segment_at(const TraceGraph& trace, uint32_t node, uint32_t other)
 {
     if (!is_inner(trace, node)) return {};
@@ -71,7 +71,7 @@ size_t inner_nodes_of(const TraceGraph& trace, const TraceInternode& internode)
     return size_t{is_inner(trace, internode.a)} + size_t{is_inner(trace, internode.b)};
 }
 
-/// The binary exponent of a length. For 0, returns the exponent of the smallest double.
+/// The binary exponent of a length; for 0, that of the smallest normal double.
 int exponent_of(double length)
 {
     return std::ilogb(std::max(length, DBL_MIN));
@@ -144,7 +144,7 @@ void TraceTally::change_group(const TraceGraph& trace, const TraceInternode& fro
 TraceSummary TraceTally::summary_of(const TraceGraph& trace) const
 {
     TraceSummary summary{.nodes = trace.nodes().size(), .internodes = trace.internodes().size()};
-    // A segment has one more internode than inner nodes; a closed segment has equally many of both.
+    // A segment has one more internode than inner nodes; in a closed segment, the two numbers are equal.
     summary.segments = summary.internodes - inner_nodes_ + closed_segments_;
     LongSum length;
     for (const auto& [number, group] : groups_) {

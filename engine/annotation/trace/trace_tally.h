@@ -1,9 +1,9 @@
 #pragma once
-// Running totals of a trace, updated as it changes: lengths by group, and the number of segments. A change costs as
-// much as visiting the internodes of its nodes. A change that splits or joins segments costs about as much as visiting
-// the shorter of the two segments.
-//
-// Not thread safe: part of a TraceGraph.
+// Running totals of a trace, updated with each change: lengths by
+// group, and the number of segments. A change costs as much as
+// visiting the internodes of its nodes; a change that splits or joins
+// segments, about as much as visiting the shorter of the two
+// segments.
 
 #include <cstddef>
 #include <cstdint>
@@ -25,20 +25,20 @@ struct TraceSummary {
 
 class TraceTally {
 public:
-    /// Called before and after a change of the position of `node`.
+    /// Call before and after changing the position of `node`.
     void before_move(const TraceGraph& trace, uint32_t node);
     void after_move(const TraceGraph& trace, uint32_t node);
-    /// Called before and after an internode is added or removed. `is_there`: the trace contains it at that time.
+    /// Call before and after adding or removing an internode. `is_there`: whether it is in the trace at that time.
     void before_link(const TraceGraph& trace, const TraceInternode& internode, bool is_there);
     void after_link(const TraceGraph& trace, const TraceInternode& internode, bool is_there);
     void change_group(const TraceGraph& trace, const TraceInternode& from, const TraceInternode& to);
 
     TraceSummary summary_of(const TraceGraph& trace) const;
-    /// An upper bound of all internode lengths: a power of two, at most twice the longest length; 0 if there are none.
+    /// An upper bound of the lengths of internodes: a power of two, at most twice the longest length; 0: no internodes.
     double longest_at_most() const;
 
 private:
-    /// A sum with twice the digits of a double, so that adding and then subtracting a value leaves no remainder.
+    /// A sum with twice the precision of a double, so that adding a value and subtracting it again leaves no remainder.
     struct LongSum {
         double high = 0.0, low = 0.0;
         void add(double value);
@@ -52,8 +52,8 @@ private:
     void remove_length(const TraceGraph& trace, const TraceInternode& internode);
 
     std::map<uint8_t, Group> groups_;  ///< groups that have internodes
-    std::map<int, size_t> lengths_;    ///< number of internodes by the binary exponent of their length
-    size_t inner_nodes_ = 0;           ///< nodes with exactly two internodes: a segment continues through them
+    std::map<int, size_t> lengths_;    ///< number of internodes, by binary exponent of their lengths
+    size_t inner_nodes_ = 0;           ///< nodes with exactly two internodes, where no segment ends
     size_t closed_segments_ = 0;       ///< loops made of such nodes only
 };
 

@@ -1,7 +1,7 @@
-// The thesis's text (appendix D.0.2): "-v x-position, y-position, z-position, colour_group, node_size" for each node
-// and "-l node_1_index, node_2_index, colour_group" for each internode. The index of a node is its position among the
-// nodes of the file, from 0; deleted nodes have no index. Lines before the nodes begin with "#" and state the space of
-// the positions. Blank lines and other spacing are accepted, too.
+// The thesis's text format (appendix D.0.2): "-v x-position, y-position, z-position, colour_group, node_size" for each
+// node and "-l node_1_index, node_2_index, colour_group" for each internode. A node's index is its position among the
+// file's nodes, from 0; deleted nodes have no index. Lines before the nodes begin with "#" and state the space of the
+// positions. Blank lines and other white space are accepted, too.
 
 #include <algorithm>
 
