@@ -20,10 +20,10 @@ struct BrushRow {
     const char* name;   ///< in sentences
     const char* title;  ///< in menus
     const char* hint;
-    bool is_connected;  ///< the brush selects connected voxels, so connectivity matters
+    bool is_connected;  ///< the brush selects connected voxels, so `connectivity` has an effect
 };
 
-/// Brushes in the order of the enumeration, which is also their order in menus.
+/// All brushes, in the order of the enumeration; menus use the same order.
 inline constexpr std::array BRUSHES{
     BrushRow{Brush::fill, "fill", "fill", "Fill",
              "Paints every voxel in the probe that is at or above the paint threshold.", false},
@@ -70,23 +70,23 @@ struct BrushSettings {
     std::optional<double> threshold{};  ///< intensity; default: from the transfer function
     double radius_voxels = 6.0;         ///< along x; also the probe's radius
     int connectivity = 6;               ///< 6 or 26
-    /// Density painting: the brush raises intensities, in addition to painting its group or instead of it.
+    /// Density painting: the brush raises intensities, either while it paints its group or instead of painting a group.
     std::optional<DensityBrush> density{};
     bool paints_group = true;     ///< false, with `density` set: offsets only
     bool only_unpainted = false;  ///< paints only unpainted voxels, so no group loses voxels
     bool operator==(const BrushSettings&) const = default;
 };
 
-/// One stroke: the settings with a definite threshold, and a path.
+/// One stroke: the settings with a definite threshold, and the path along which the brush moved.
 struct PaintOp {
     Brush brush = Brush::flood;
     RegionShape region = RegionShape::ball;
     uint8_t group = 1;             ///< 0 erases
-    double threshold = 0.0;        ///< intensities at or above it are selected; in units of the file
+    double threshold = 0.0;        ///< voxels at or above this intensity are selected; in units of the file
     double radius_voxels = 6.0;    ///< along x
     int connectivity = 6;          ///< 6 or 26
     std::vector<glm::dvec3> path;  ///< voxel coordinates
-    /// Offsets for the selected voxels; with group 0, their offsets are removed instead.
+    /// Offsets for the selected voxels. With group 0, the stroke removes the voxels' offsets instead.
     std::optional<DensityBrush> density{};
     bool paints_group = true;     ///< false: offsets only
     bool only_unpainted = false;  ///< as in BrushSettings
@@ -101,7 +101,7 @@ struct PaintOp {
 /// Returns the stroke that these settings make along a path; uses `threshold` if the settings state none.
 inline PaintOp stroke_of(const BrushSettings& settings, double threshold, std::vector<glm::dvec3> path = {})
 {
-    // Uses a structured binding, so that a new member fails to compile until it is handled here.
+    // A structured binding makes this function fail to compile if a member is added but not handled here.
     const auto& [brush, region, group, own_threshold, radius_voxels, connectivity, density, paints_group,
                  only_unpainted] = settings;
     return {brush,         region,        group,           own_threshold.value_or(threshold),

@@ -22,31 +22,31 @@ constexpr std::span<const Spelling<Falloff>> spellings_of(Falloff)
     return FALLOFFS;
 }
 
-/// The density part of a brush. It is painted together with a group or instead of one.
+/// The density part of a brush, painted together with a group or instead of one.
 struct DensityBrush {
-    /// P, in intensity units. Null: automatic, which makes the paint threshold as bright as the lowest point of the
-    /// transfer function; callers replace null by `automatic_offset` before painting.
+    /// P, in intensity units. Null: automatic, an offset that makes voxels at the paint threshold as bright as the
+    /// lowest point of the transfer function. Callers must replace null by `automatic_offset` before painting.
     std::optional<double> offset{};
     Falloff falloff = Falloff::flat;
     bool operator==(const DensityBrush&) const = default;
 };
 
-/// The lowest point of the transfer function minus the paint threshold. A negative difference becomes 0: voxels at the
+/// The lowest point of the transfer function minus the paint threshold, or 0 if that is negative, because voxels at the
 /// threshold are visible already.
 double automatic_offset(double lowest_point, double paint_threshold);
 
 /// Applies the rule of density.h to values stored as bits of the type: returns the new offset of a voxel whose offset
-/// is `old`, where P = `most` and p(v) = `here`.
+/// is `old`, with P = `most` and p(v) = `here`.
 uint32_t painted_offset(VoxelType type, uint32_t old, uint32_t most, uint32_t here);
 
 class DensityStroke {
 public:
-    /// Fails if the offset is not a finite number. Offsets beyond `offset_limit` are clamped to it.
+    /// Fails if the offset is not finite. Clamps offsets to `offset_limit`.
     DensityStroke(Size3 size, const glm::dvec3& spacing, VoxelType type, double offset, Falloff falloff);
-    /// Adds the voxels of `region` whose bit is set (VoxelSelection::add). `region` surrounds `centre_voxel`.
+    /// Adds the voxels of `region`, around `centre_voxel`, whose bits in `words` are set (VoxelSelection::add).
     void add(const BrushRegion& region, std::span<const uint32_t> words, const glm::dvec3& centre_voxel,
              double radius_voxels);
-    /// The records that paint everything added so far; voxels that keep their offset are left out.
+    /// Returns the records that paint all voxels added so far, omitting voxels whose offset does not change.
     std::vector<DensityBrickChange> changes(const DensityField& field) const;
 
 private:
@@ -57,7 +57,7 @@ private:
     double offset_;
     Falloff falloff_;
     VoxelSelection selection_;
-    std::map<int64_t, std::unique_ptr<OffsetBrick>> strongest_;  ///< p of each selected voxel: the strongest over all
+    std::map<int64_t, std::unique_ptr<OffsetBrick>> strongest_;  ///< strongest p of each selected voxel over all
                                                                  ///< positions
 };
 

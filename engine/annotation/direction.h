@@ -2,7 +2,7 @@
 
 namespace shvr {
 
-/// Which way a change record is applied: redo or undo.
+/// The direction in which a change record is applied: forwards (redo) or backwards (undo).
 enum class Direction { forwards, backwards };
 
 }  // namespace shvr

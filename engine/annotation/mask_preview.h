@@ -1,5 +1,5 @@
 #pragma once
-// Counts how changes of a mask would affect its groups, before they are made. Any thread.
+// Counts how changes of a mask would affect its groups, before the changes are made. Any thread.
 
 #include <array>
 #include <cstdint>
@@ -13,7 +13,7 @@ class MaskPreview {
 public:
     /// `before`: the mask as it is.
     explicit MaskPreview(const Mask& before) : before_(before.voxels_by_group()) {}
-    /// Each voxel may occur in one change only.
+    /// Adds a change. Each voxel may be in one change only.
     void add(const MaskBrickChange& change);
 
     struct Group {
@@ -22,7 +22,7 @@ public:
         int64_t after() const { return before + gained - lost; }
         bool operator==(const Group&) const = default;
     };
-    /// The groups that gain or lose voxels, in ascending order; unpainted voxels are no group.
+    /// The groups that gain or lose voxels, in ascending order; unpainted voxels do not count as a group.
     std::vector<Group> groups() const;
     /// Number of voxels that change their group, including those that become painted or unpainted.
     int64_t voxels() const { return voxels_; }

@@ -1,8 +1,8 @@
 #pragma once
-// Decides which of a brush's selected voxels change their group, and makes the records for that.
+// Decides which of a brush's selected voxels change their group, and makes the records of these changes.
 //
-// The only code that knows of locks: painting, preview and counts all use it. A brush's kernels find voxels by density,
-// shape and connectivity alone; permissions are checked next to the mask, on the host. Pure; any thread.
+// Only this code applies locks; painting, preview and counts all use it. A brush's kernels select voxels by density,
+// shape and connectivity alone; locks are checked on the host, where the current mask is. Pure; any thread.
 
 #include <vector>
 
@@ -23,12 +23,12 @@ struct PaintRule {
     uint8_t group = 1;  ///< 0 erases
     bool only_unpainted = false;
     GroupSet locked{};
-    /// The fate of a selected voxel in group `held`, 0 if it is unpainted.
+    /// The fate of a selected voxel whose present group is `held` (0: unpainted).
     Fate fate_of(uint8_t held) const;
 };
 PaintRule rule_of(const PaintOp& op);
 
-/// Returns the records that assign `rule.group` to the voxels of `selection` whose group the rule lets change.
+/// Returns the records that set the group of the selected voxels to `rule.group`, where the rule allows it.
 std::vector<MaskBrickChange> paint_changes(const Mask& mask, const VoxelSelection& selection, const PaintRule& rule);
 
 }  // namespace shvr

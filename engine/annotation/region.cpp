@@ -18,12 +18,12 @@ struct Range {
     int64_t begin, end;
 };
 
-/// Returns the voxels of `within` from the first to the last that satisfies `holds`. The estimate (`reach` voxels on
+/// Returns the range of `within` from the first to the last position that satisfies `holds`. The estimate (`reach` on
 /// both sides of `centre`) only gives the start of the search; the test `holds` decides.
 template <class Test>
 Range range_where(double centre, double reach, const Range& within, const Test& holds)
 {
-    constexpr double FAR_AWAY = 1 << 22;  // distance in voxels beyond which the estimate is useless, as for NaN
+    constexpr double FAR_AWAY = 1 << 22;  // beyond this many voxels, and for NaN, the estimate is not used
     Range range = within;
     if (reach < FAR_AWAY && std::abs(centre) < FAR_AWAY) {
         range.begin = std::clamp(int64_t(std::floor(centre - reach)) - 1, within.begin, within.end);
@@ -34,7 +34,7 @@ Range range_where(double centre, double reach, const Range& within, const Test& 
     return range;
 }
 
-/// Bits `begin` ... `end` - 1 of a row, limited to those in its word `word`, at their positions in that word.
+/// The bits of the span that lie in word `word` of its row, at their positions in the word.
 uint32_t span_bits(const gpu::RowSpan& span, int64_t word)
 {
     const int64_t begin = std::max<int64_t>(span.begin - 32 * word, 0);
@@ -42,7 +42,7 @@ uint32_t span_bits(const gpu::RowSpan& span, int64_t word)
     return begin < end ? ~uint32_t{0} >> (32 - (end - begin)) << begin : 0;
 }
 
-/// At least 1, so that two equal points remain two positions of the stroke.
+/// Number of steps from a to b; at least 1, so that two equal points still give two positions of the stroke.
 double steps_between(const glm::dvec3& a, const glm::dvec3& b)
 {
     const glm::dvec3 way = glm::abs(b - a);
@@ -74,7 +74,7 @@ bool BrushRegion::contains(const Size3& voxel) const
 
 void check_radius(double radius_voxels, const glm::dvec3& spacing, const Size3& volume_size)
 {
-    // A region is centred on a voxel or between two, so its number of voxels along an axis is odd or even.
+    // Depending on whether a region is centred on a voxel or between two, its size along an axis is odd or even.
     const glm::dvec3 reach = glm::min(radius_voxels * spacing.x / spacing, glm::dvec3(volume_size));
     const Size3 widest = glm::max(2l * Size3(glm::floor(reach)) + 1l, 2l * Size3(glm::floor(reach + 0.5)));
     refuse_size(radius_voxels, glm::min(widest, volume_size));
@@ -143,8 +143,8 @@ std::vector<glm::dvec3> stroke_positions(std::span<const glm::dvec3> path)
 
 VoxelSelection::VoxelSelection(Size3 size) : size_(size), counts_(brick_grid(size)) {}
 
-// A brick's row along x is one word of the selection; a word of the region may overlap two such words. Bricks are
-// looked up once for all of the region's rows that cross the same bricks.
+// A row of a brick is one word of the selection; a word of the region may extend over two such words. `row_of_bricks`
+// caches the bricks while the region's rows stay in the same row of bricks.
 void VoxelSelection::add(const BrushRegion& region, std::span<const uint32_t> words)
 {
     const Size3 size = region.box.size();
@@ -166,7 +166,7 @@ void VoxelSelection::add(const BrushRegion& region, std::span<const uint32_t> wo
             if (y == region.box.lower.y || y % BRICK_SIDE == 0)
                 std::fill(row_of_bricks.begin(), row_of_bricks.end(), nullptr);
             for (int64_t w = 0; w < per_row; ++w) {
-                // Kernels should respect the spans; if one does not, this mask still excludes voxels outside them.
+                // This mask excludes voxels outside the spans, even if a kernel selected some by mistake.
                 const uint32_t word = words[row * size_t(per_row) + size_t(w)] & span_bits(region.rows[row], w);
                 merge(w, y, z, word << shift);
                 if (shift > 0) merge(w + 1, y, z, word >> (BRICK_SIDE - shift));

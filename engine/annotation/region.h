@@ -1,9 +1,9 @@
 #pragma once
-// The local region of a brush (a ball or its bounding box around the probe) and sets of selected voxels.
+// The local region of a brush (a ball or a box around the probe), and sets of selected voxels.
 //
-// A region is a list of row spans: for each (y, z) of its box the half-open range of x that belongs to it. The spans
-// are computed here, in double, once; brush kernels only intersect them with the voxels that they select, so the CPU
-// and the device can never disagree about a voxel on the region's surface.
+// A region is a list of row spans: for each (y, z) of its box, the half-open range of x that belongs to the region. The
+// spans are computed here, once and in double precision. Brush kernels only intersect the spans with the voxels they
+// select, so the CPU and the device cannot disagree about a voxel on the region's surface.
 
 #include <cstdint>
 #include <map>
@@ -22,7 +22,7 @@ struct BrushRegion {
     VoxelBox box;                    ///< clipped to the volume; may be empty
     std::vector<gpu::RowSpan> rows;  ///< box.size().y * box.size().z spans, y fastest, x relative to box.lower.x
     bool contains(const Size3& voxel) const;
-    /// 32-bit words per row: bit b of word w is voxel x = box.lower.x + 32 w + b.
+    /// Number of 32-bit words per row: bit b of word w is voxel x = box.lower.x + 32 w + b.
     int64_t words_per_row() const { return (box.size().x + 31) / 32; }
 };
 
@@ -32,14 +32,14 @@ struct BrushRegion {
 BrushRegion make_region(RegionShape shape, const glm::dvec3& centre_voxel, double radius_voxels,
                         const glm::dvec3& spacing, const Size3& volume_size);
 
-/// Fails if a brush of this radius would have too large a region at some position in a volume of that size.
+/// Fails if the region of a brush with this radius would be too large at some position in a volume of that size.
 void check_radius(double radius_voxels, const glm::dvec3& spacing, const Size3& volume_size);
 
-/// The probe's positions along a stroke: the points of `path`, and between two of them as many equally spaced ones as
-/// are needed to keep neighbours at most one voxel apart along every axis. A path of one point is a dab. Fails if there
-/// are more than MAX_STROKE_POSITIONS.
+/// The probe's positions along a stroke: the points of `path`, with equally spaced points inserted so that successive
+/// positions are at most one voxel apart along every axis. A path of one point gives one position. Fails if there are
+/// more than MAX_STROKE_POSITIONS.
 std::vector<glm::dvec3> stroke_positions(std::span<const glm::dvec3> path);
-/// Number of `stroke_positions`, without computing them; infinite if coordinates are too far apart for a double.
+/// Number of `stroke_positions`, without computing them; infinite if points of the path are too far apart for a double.
 double stroke_position_count(std::span<const glm::dvec3> path);
 inline constexpr int64_t MAX_STROKE_POSITIONS = 1'000'000;
 

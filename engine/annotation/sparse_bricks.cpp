@@ -20,7 +20,7 @@ Size3 place_in_brick(int64_t index)
 bool run_is_inside(int64_t first, int64_t last, const Size3& extent)
 {
     const Size3 begin = place_in_brick(first), end = place_in_brick(last);
-    // A run is contiguous in the brick: if it spans rows, the brick has all columns; if it spans slices, all rows.
+    // Runs are contiguous: a run over several rows needs all columns of the brick, a run over several slices all rows.
     const bool rows_are_full = extent.x == BRICK_SIDE || first / BRICK_SIDE == last / BRICK_SIDE;
     const bool slices_are_full = extent.y == BRICK_SIDE || begin.z == end.z;
     return rows_are_full && slices_are_full && glm::all(glm::lessThan(begin, extent)) &&
@@ -76,7 +76,7 @@ VoxelBox SparseBricks<Value>::reach_of(const BrickChange<Value>& change) const
     Size3 lower(BRICK_SIDE), upper(0);
     for (const BrickRun<Value>& run : change.runs) {
         Size3 first = place_in_brick(run.first), last = place_in_brick(run.last);
-        // A run that spans rows may contain any column, and one that spans slices any row.
+        // The box of a run over several rows includes all columns; that of a run over several slices includes all rows.
         if (first.z != last.z) first.y = 0, last.y = BRICK_SIDE - 1;
         if (run.first / BRICK_SIDE != run.last / BRICK_SIDE) first.x = 0, last.x = BRICK_SIDE - 1;
         lower = glm::min(lower, first);

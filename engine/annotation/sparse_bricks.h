@@ -1,11 +1,11 @@
 #pragma once
-// One value per voxel of a volume, most of them 0, in sparse bricks of 32^3 voxels: the base of the mask (mask.h) and
-// density offsets (density.h). A brick whose values are all 0 does not exist. Values change only through records of the
-// exact states before and after; undo is the same record applied backwards.
+// One value per voxel of a volume, most of them 0, in sparse bricks of 32^3 voxels: the base class of the mask (mask.h)
+// and of density offsets (density.h). A brick whose values are all 0 does not exist. Values change only through records
+// of the exact states before and after; undo applies the same record backwards.
 //
-// Bricks are immutable: changing a brick's voxels replaces it. So a copy of all bricks costs only their table, and
-// callers may keep a brick for as long as they like. One thread owns the bricks and lends them as const; a copy may go
-// to another thread.
+// Bricks are immutable: changing voxels replaces their brick. So copying all bricks copies only the table of pointers,
+// and callers may keep a brick as long as they like. One thread owns the bricks and lends them as const; a copy may be
+// used on another thread.
 
 #include <algorithm>
 #include <array>
@@ -45,7 +45,7 @@ struct BrickChange {
     int64_t voxels() const;
 };
 
-/// Appends voxels `first` to `last` (inclusive), which must come after those of `runs`. Extends the last run if
+/// Appends voxels `first` to `last` (inclusive), which must come after the voxels of `runs`. Extends the last run if
 /// possible, and omits voxels that keep their value.
 template <class Value>
 void append_run(std::vector<BrickRun<Value>>& runs, size_t first, size_t last, Value before, Value after)
@@ -58,7 +58,7 @@ void append_run(std::vector<BrickRun<Value>>& runs, size_t first, size_t last, V
         runs.push_back({uint16_t(first), uint16_t(last), before, after});
 }
 
-/// Appends the runs that set the voxels of an empty brick to the values of `row`, beginning at voxel `first`.
+/// Appends runs that set voxels of an empty brick to the values of `row`, from voxel `first` on.
 template <class Value>
 void append_painted_runs(std::vector<BrickRun<Value>>& runs, std::span<const std::type_identity_t<Value>> row,
                          size_t first)
@@ -71,7 +71,7 @@ void append_painted_runs(std::vector<BrickRun<Value>>& runs, std::span<const std
     }
 }
 
-/// Index of a voxel of the volume among the voxels of its brick.
+/// The linear index, within its brick, of a voxel of the volume.
 inline size_t index_in_brick(const Size3& voxel)
 {
     return size_t(index_of(voxel % BRICK_SIDE, Size3(BRICK_SIDE)));
@@ -92,7 +92,7 @@ public:
     /// The voxels of a brick, clipped to the volume.
     VoxelBox box_of(int64_t brick) const;
 
-    /// Null if all of the brick's values are 0.
+    /// The brick, or null if all its values are 0.
     const std::shared_ptr<const Brick>& brick(int64_t index) const;
     /// Bricks with a value other than 0, ascending.
     std::vector<int64_t> painted_bricks() const;
@@ -103,19 +103,19 @@ protected:
     /// The value of a voxel of the volume (SHVR_CHECK).
     Value value_at(const Size3& voxel) const;
 
-    /// Function that names a value in error messages: "group 3".
+    /// A function that returns the name of a value for error messages, such as "group 3".
     using Named = std::function<std::string(Value)>;
-    /// Function that returns whether voxels may be set to a value; if it is empty, any value is allowed.
+    /// A function that returns whether voxels may be set to a value; if empty, all values are allowed.
     using Allowed = std::function<bool(Value)>;
-    /// Returns why a change cannot be applied; empty if it fits. Its runs must ascend inside the volume, and their
-    /// voxels must have the values that the record states for the time before the change.
+    /// Returns why a change cannot be applied; empty if it can. The change's runs must ascend and lie inside the
+    /// volume, and their voxels must have the values that the change is to replace.
     std::string why_it_does_not_fit(const BrickChange<Value>& change, Direction direction, const Named& named,
                                     const Allowed& allowed = {}) const;
-    /// Applies a change that fits; `replaced(from, to, voxels)` is called for each run. Frees bricks that return to 0.
+    /// Applies a change that fits, calling `replaced(from, to, voxels)` for each run. Frees bricks that become all 0.
     template <class Replaced>
     void replace(const BrickChange<Value>& change, Direction direction, const Replaced& replaced);
-    /// Adds a missing brick (SHVR_CHECK) and returns how many of its voxels are not 0. Voxels beyond the volume's
-    /// border are set to 0.
+    /// Adds a brick that must not exist yet (SHVR_CHECK), and returns how many of its voxels are not 0. Voxels beyond
+    /// the volume's border are set to 0.
     int64_t put(int64_t index, Brick values);
 
 private:

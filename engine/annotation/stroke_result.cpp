@@ -17,7 +17,7 @@ int64_t sum_of(const StrokeResult::ByGroup& voxels)
                            [](int64_t sum, const auto& one) { return sum + one.second; });
 }
 
-/// Sets the bits `first` ... `last`; returns how many were not set before.
+/// Sets the bits `first` ... `last`; returns how many of them were not set before.
 int64_t set_bits(VoxelSelection::Bits& bits, size_t first, size_t last)
 {
     int64_t added = 0;
@@ -50,7 +50,7 @@ std::string listed(const std::vector<std::string>& items)
     return list;
 }
 
-/// Lists groups, most voxels first, each as `item(voxels, name)`; if there are over four, sums up all but three.
+/// Lists groups, most voxels first, each as `item(voxels, name)`. Of more than four groups, lists three and a sum.
 template <class Item>
 std::string listed(const StrokeResult::ByGroup& voxels, const GroupNames& name_of, const Item& item)
 {
@@ -70,7 +70,7 @@ std::string listed(const StrokeResult::ByGroup& voxels, const GroupNames& name_o
     return listed(items);
 }
 
-/// Lists the previous groups of the painted voxels; continues the sentence "Painted N voxels in group G".
+/// Lists the previous groups of the painted voxels, to continue the sentence "Painted N voxels in group G".
 std::string taken_in_words(const StrokeResult& result, const GroupNames& name_of)
 {
     const int64_t taken = sum_of(result.taken_from);
@@ -107,7 +107,7 @@ std::string raised_in_words(const StrokeResult& result, bool is_first)
     return (is_first ? "Changed" : "changed") + sentence(voxels, " (", offset > 0.0 ? "+" : "", offset, ")");
 }
 
-/// Describes the selected voxels that did not change, with the reasons; returns an empty text if all changed.
+/// Describes the selected voxels that did not change, with the reasons; empty if all of them changed.
 std::string kept_in_words(const StrokeResult& result, const GroupNames& name_of)
 {
     std::string words;
@@ -164,7 +164,7 @@ void StrokeTally::add(const Mask& before, const VoxelSelection& selection, std::
             result_.regrouped += voxels;
             if (run.before != 0) result_.taken_from[run.before] += voxels;
         }
-    // A later answer of the device may raise the same voxel further.
+    // The set counts each voxel once: a later answer of the device may raise the same voxel further.
     for (const DensityBrickChange& change : offsets)
         for (const DensityRun& run : change.runs)
             result_.raised += set_bits(raised_[change.brick], run.first, run.last);
