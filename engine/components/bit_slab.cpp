@@ -9,12 +9,12 @@
 namespace shvr {
 namespace {
 
-/// Voxel bytes to read at once: the size of a core's second-level cache. Exceeded only if a single block takes more.
+/// Voxels are read in parts of at most this size, a core's L2 cache, unless a single block of the source is larger.
 constexpr int64_t STRIP_BYTES = int64_t{1} << 20;
 constexpr int64_t MAX_BIT_BYTES = int64_t{64} << 20;
 constexpr int64_t WORD = 64;
 
-/// Column ranges of the blocks in the row that starts with `block`; blocks that touch along x form one range.
+/// Returns the columns of the run of blocks that starts with `block`, and moves `block` past that run.
 template <class Block>
 BitLayout::Columns touching(Block& block, Block end, const StoredBlocks& stored, int64_t width)
 {
@@ -61,7 +61,7 @@ BitSlab::BitSlab(const VolumeSource& source, const ThresholdBits& bits, const Bi
 int64_t BitSlab::thickness_of(const BitLayout::Layer& layer) const
 {
     const int64_t thickness = std::clamp<int64_t>(MAX_BIT_BYTES / (8 * layer.words), 1, block_.z);
-    // If blocks are thin and slices small, one slab spans many blocks along z.
+    // If blocks are thin and slices small, the slab spans several blocks along z, to keep reads large.
     const int64_t bytes = layer.words * WORD * int64_t(bytes_of(bits_.type()));
     return thickness < block_.z ? thickness : thickness * std::max<int64_t>(STRIP_BYTES / (bytes * thickness), 1);
 }
@@ -82,7 +82,7 @@ bool BitSlab::read(int64_t z, int64_t end)
     return true;
 }
 
-/// `first_word`: index, within each slice, of the first word of the strip's first row.
+/// Fills the bits of a strip. `first_word`: index, within each slice, of the first word of the strip's first row.
 void BitSlab::read_strip(const BitLayout::Strip& strip, int64_t first_word)
 {
     const auto voxel_bytes = int64_t(bytes_of(bits_.type()));
@@ -93,7 +93,7 @@ void BitSlab::read_strip(const BitLayout::Strip& strip, int64_t first_word)
     int64_t word_of_columns = first_word;
     for (const BitLayout::Columns& columns : strip.columns) {
         const int64_t width = columns.upper - columns.lower;
-        // Reads as many whole rows of blocks at once as fit. If not even one fits, reads parts: whole blocks and words.
+        // Reads as many whole rows of blocks at once as the limit allows or, if not even one, parts of a row of blocks.
         const int64_t least_bytes = voxel_bytes * block_.y * slices;
         int64_t step = width;
         if (width * least_bytes > STRIP_BYTES) {
@@ -111,11 +111,11 @@ void BitSlab::read_strip(const BitLayout::Strip& strip, int64_t first_word)
     }
 }
 
-/// The columns of `part`, in whole words, that can hold a voxel at or above the threshold; null if there are none.
+/// Returns the columns of `part`, in whole words, that can hold voxels at or above the threshold; null if none can.
 std::optional<BitLayout::Columns> BitSlab::columns_above(const VoxelBox& part) const
 {
     const int64_t begin = part.lower.x, end = part.upper.x;
-    // Stored ranges exclude infinities, but an infinite voxel can still be above the threshold.
+    // The known range of a float brick excludes infinities, but an infinite voxel can still be above the threshold.
     if (is_float(bits_.type())) return BitLayout::Columns{begin, end};
     const Size3 first = part.lower / BRICK_SIDE, last = (part.upper - int64_t{1}) / BRICK_SIDE;
     const auto is_above = [&](int64_t x) {
@@ -134,7 +134,7 @@ std::optional<BitLayout::Columns> BitSlab::columns_above(const VoxelBox& part) c
                               std::min(end, begin + words_of_row(upper * BRICK_SIDE - begin) * WORD)};
 }
 
-/// `first_word`: index of the part's first word within each slice; `words_of_rows`: words from one row to the next.
+/// Fills the bits of a part. `first_word`: index of its first word within each slice; `words_of_rows`: words per row.
 void BitSlab::read_part(const VoxelBox& part, int64_t first_word, int64_t words_of_rows)
 {
     const std::optional<BitLayout::Columns> columns = columns_above(part);

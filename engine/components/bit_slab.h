@@ -1,6 +1,6 @@
 #pragma once
-// A slab of slices of a volume as bits, set for the voxels at or above a threshold. Holds only the parts that the
-// source stores; all other voxels are below the threshold. For components.cpp.
+// A slab of slices of a volume with one bit per voxel, set if the voxel is at or above the threshold. Holds only the
+// parts that the source stores; all other voxels are below the threshold. For components.cpp.
 
 #include <optional>
 #include <vector>
@@ -10,13 +10,13 @@
 
 namespace shvr {
 
-/// The rows and columns of each slice that can hold voxels at or above the threshold.
+/// Which rows and columns of each slice have bits: those that can hold voxels at or above the threshold.
 class BitLayout {
 public:
     struct Columns {
         int64_t lower = 0, upper = 0;
     };
-    /// Rows [lower, upper) of a layer of slices, in disjoint, non-adjacent column ranges.
+    /// Rows [lower, upper) of a layer, with bits in these column ranges, which neither overlap nor touch.
     struct Strip {
         int64_t lower = 0, upper = 0;
         std::vector<Columns> columns{};
@@ -27,10 +27,10 @@ public:
         int64_t words = 0;  ///< words of bits per slice
     };
 
-    /// Covers only the blocks in `stored` or, if that is null, all voxels as one layer.
+    /// Covers the blocks in `stored`; if `stored` is null, covers all voxels by a single layer.
     BitLayout(const Size3& size, const std::optional<StoredBlocks>& stored);
 
-    /// The layer that contains slice z, or else the next layer; null if there is none.
+    /// Returns the layer that contains slice z or, if none does, the next layer; null if there is none.
     const Layer* layer_from(int64_t z) const;
     int64_t words() const { return words_; }  ///< total of all slices
 
@@ -44,17 +44,17 @@ public:
     /// All arguments must outlive it.
     BitSlab(const VolumeSource& source, const ThresholdBits& bits, const BitLayout& layout);
 
-    /// Finds and reads the next slab from slice z on, up to `end`. Skips empty slices. The slab is as thick as the
-    /// source's blocks, so that they are decoded once, unless its bits would take more than 64 MiB. Returns false if no
+    /// Finds and reads the next slab at or after slice z and before `end`. Skips empty slices. The slab is as thick as
+    /// the source's blocks, so that they are decoded only once, but takes at most 64 MiB of bits. Returns false if no
     /// slab is left. Does not read parts that the source knows to be below the threshold.
     bool read(int64_t z, int64_t end);
     int64_t lower() const { return lower_; }
     int64_t upper() const { return upper_; }
-    /// Words of the slab's bits, as counted by BitLayout::words.
+    /// Number of words in the slab, for progress relative to BitLayout::words.
     int64_t words() const { return layer_->words * (upper_ - lower_); }
 
-    /// Calls `take(y, ends)`, in order, for each row of slice z that has runs. `ends` lists the first voxel of every
-    /// run and the voxel after the run's last.
+    /// Calls `take(y, ends)`, in order, for each row of slice z that has runs. For each run, `ends` holds its first
+    /// voxel and the voxel after its last.
     template <class Take>
     void for_each_row(int64_t z, const Take& take)
     {

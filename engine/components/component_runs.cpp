@@ -16,7 +16,7 @@ FileDescriptor nameless_file(const std::filesystem::path& folder)
     const std::filesystem::path place = folder.empty() ? "." : folder;
     const int number = ::open(place.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
     if (number >= 0) return FileDescriptor(number);
-    // Some file systems do not support unnamed files.
+    // A named file that is unlinked at once, since some file systems do not support unnamed files.
     std::string pattern = (place / ".shvr-runs-XXXXXX").string();
     FileDescriptor file(::mkostemp(pattern.data(), O_CLOEXEC));
     if (!file) fail(place.string(), ": no file can be made in it: ", reason_of(errno));

@@ -1,5 +1,5 @@
 #pragma once
-// The labelled runs of whole slices, and a file that stores them while a volume is labelled. For components.cpp.
+// The labelled runs of whole slices, and a file that stores them while a volume is being labelled. For components.cpp.
 
 #include <atomic>
 #include <cstdint>
@@ -17,11 +17,11 @@ struct LabelledRun {
     uint32_t begin = 0, end = 0, label = 0;
 };
 
-/// The runs of a slice, row by row; rows without runs are absent.
+/// The runs of one slice, row by row; rows without runs have no entry.
 struct SliceRuns {
     struct Row {
         uint32_t y = 0;
-        uint32_t end = 0;  ///< end of the row's runs, which begin where those of the previous row end
+        uint32_t end = 0;  ///< one past the row's last index in `runs`; its first is the previous row's `end`
     };
     std::vector<Row> rows{};  ///< ascending
     std::vector<LabelledRun> runs{};
@@ -40,8 +40,8 @@ struct SliceRuns {
     int64_t bytes() const { return int64_t(rows.capacity() * sizeof(Row) + runs.capacity() * sizeof(LabelledRun)); }
 };
 
-/// An unnamed temporary file, so that nothing is left behind even after a crash. Any thread may write and read
-/// different slices at once; each slice is written once, before it is read.
+/// An unnamed temporary file, which leaves nothing behind even after a crash. Any thread may write and read different
+/// slices at once; each slice is written once, before it is read.
 class RunFile {
 public:
     /// Creates the file in `folder`, for `slices` slices. Fails if no file can be created there.

@@ -20,9 +20,9 @@ namespace shvr {
 namespace {
 
 constexpr uint32_t NO_LABEL = std::numeric_limits<uint32_t>::max();
-/// Number of ranges per thread (several, since some ranges hold more runs than others), and minimum range thickness.
+/// Ranges per thread (several, to balance the load, as some ranges hold more runs), and a range's minimum thickness.
 constexpr int64_t RANGES_PER_THREAD = 4, THINNEST_RANGE = 16;
-/// Limit on the size of a slice stored as bits: 2^33 voxels.
+/// Maximum size of a slice stored as bits: 2^33 voxels.
 constexpr int64_t MAX_SLICE_BYTES = int64_t{1} << 30;
 
 [[noreturn]] void refuse_labels()
@@ -46,8 +46,8 @@ private:
     std::atomic<int64_t> now_ = 0, peak_ = 0;
 };
 
-/// Joins touching runs of two neighbouring rows; with `reach` 1, runs also touch over an edge or a corner. A run of
-/// `row` without a label takes the label of its neighbour.
+/// Joins touching runs of two neighbouring rows; with `reach` 1, runs may also touch at an edge or a corner. A run of
+/// `row` without a label takes the label of the run it touches.
 void join_rows(std::span<LabelledRun> row, std::span<const LabelledRun> before, uint32_t reach, LabelForest& forest)
 {
     auto first = before.begin();
@@ -62,8 +62,8 @@ void join_rows(std::span<LabelledRun> row, std::span<const LabelledRun> before, 
     }
 }
 
-/// Joins a row with the row at the same position in the preceding slice and, for connectivity over corners, with the
-/// neighbours of that row. The caller passes `at` as 0 for a slice's first row, and unchanged for the next rows.
+/// Joins a row with the row at the same y in the preceding slice and, for connectivity over corners, with the rows next
+/// to that one. `at` is a position in `before`: the caller passes 0 for a slice's first row, and then keeps it.
 void join_slices(std::span<LabelledRun> row, int64_t y, SliceRuns& before, size_t& at, Connectivity connectivity,
                  LabelForest& forest)
 {
@@ -73,16 +73,16 @@ void join_slices(std::span<LabelledRun> row, int64_t y, SliceRuns& before, size_
         join_rows(row, before.runs_of(near), reach, forest);
 }
 
-/// A range of slices, with its own set of labels. One thread.
+/// A range of slices, labelled by one thread with its own set of labels.
 class LabelledRange {
 public:
     LabelledRange(int64_t lower_slice, int64_t upper_slice) : lower_(lower_slice), upper_(upper_slice) {}
 
-    /// `words_done` counts words as BitSlab::words does. Stops early if `is_stopped`.
+    /// Labels the range. Adds finished words (BitSlab::words) to `words_done`. Stops early if `is_stopped` is set.
     void label(BitSlab& slab, Connectivity connectivity, RunFile* file, HeldBytes& held,
                std::atomic<int64_t>& words_done, const std::atomic<bool>& is_stopped)
     {
-        int64_t done = lower_;  // slices done so far; skipped ones have no runs
+        int64_t done = lower_;  // first slice not done yet; skipped slices are empty
         for (int64_t slab_bytes = slab.bytes(); !is_stopped && slab.read(done, upper_); slab_bytes = slab.bytes()) {
             held.change(slab.bytes() - slab_bytes);
             for (int64_t z = slab.lower(); z < slab.upper(); ++z) {
@@ -101,7 +101,7 @@ public:
         count_held(held);
     }
 
-    SliceRuns first, last;  ///< first and last slice, with this range's own labels
+    SliceRuns first, last;  ///< first and last slice, still with this range's own labels
     LabelForest forest;
     int64_t foreground_voxels = 0;
     int64_t lower_slice() const { return lower_; }
@@ -150,13 +150,13 @@ private:
 
 // ---- All ranges -----------------------------------------------------------------------------------------------------
 
-/// The data that the volume of labels needs.
+/// Everything that computes the labels of voxels on demand.
 struct LabelTable {
-    LabelForest forest;                    ///< maps provisional labels to final labels, stored as their parents
+    LabelForest forest;                    ///< the parent of each provisional label is its final label
     std::vector<int64_t> lower;            ///< first slice of each range
     std::vector<uint32_t> bases;           ///< offset of each range's labels
-    std::optional<RunFile> runs{};         ///< the runs, with the labels of their ranges
-    std::optional<StoredBlocks> stored{};  ///< blocks that can hold labels; null: all
+    std::optional<RunFile> runs{};         ///< all runs, with their ranges' own labels
+    std::optional<StoredBlocks> stored{};  ///< blocks that can hold labels; null: all blocks
 };
 
 class LabelSource final : public VolumeSource {
@@ -238,7 +238,7 @@ public:
     }
 
 private:
-    /// The blocks of a sparse volume that can hold voxels at or above the threshold; null: all blocks.
+    /// Returns the blocks of a sparse volume that can hold voxels at or above the threshold; null: all blocks.
     std::optional<StoredBlocks> stored_above(const VolumeSource& source) const
     {
         const Size3& size = source.info().size;
@@ -266,7 +266,7 @@ private:
         const ThresholdBits bits(source_info_.type, options_.threshold);
         const BitLayout layout(size, table_->stored);
         std::vector<BitSlab> slabs(size_t(threads), BitSlab(source, bits, layout));
-        // Ranges are whole blocks, so that no block is decoded twice.
+        // Each range consists of whole blocks, so that no block is decoded twice.
         const int64_t block = std::min(source.block().z, size.z);
         const int64_t wanted = threads == 1 ? 1 : threads * RANGES_PER_THREAD;
         const int64_t thickness =
@@ -281,7 +281,7 @@ private:
             try {
                 tell(options_.progress, double(words_done) / words);
             } catch (...) {
-                is_stopped = true;  // stops the ranges in progress, which can take long
+                is_stopped = true;  // makes the other threads stop soon; a range can take long
                 throw;
             }
         });
@@ -293,7 +293,7 @@ private:
         counts_.peak_bytes = held.peak();
     }
 
-    /// Merges the forests into one and joins the last slice of each range to the first of the next.
+    /// Merges the forests of all ranges, and joins the last slice of each range to the first slice of the next one.
     void join_ranges()
     {
         LabelForest& forest = table_->forest;
@@ -315,7 +315,7 @@ private:
         counts_.forest_bytes = forest.bytes();
     }
 
-    /// Sets the parent of each label to the smallest label of its component, which also receives the voxel count.
+    /// Makes each label a direct child of its component's smallest label, which also receives all voxel counts.
     void resolve()
     {
         LabelForest& forest = table_->forest;
@@ -328,7 +328,7 @@ private:
         }
     }
 
-    /// Orders components by size, and components of equal size by their first voxel.
+    /// Orders components by size, largest first; components of equal size by their first voxel.
     struct Larger {
         bool operator()(const Component& a, const Component& b) const
         {

@@ -20,7 +20,7 @@ public:
     /// The maximum number of labels.
     static constexpr uint64_t MOST = uint64_t{1} << 32;
 
-    /// Adds a new set. The caller must not exceed MOST labels.
+    /// Adds a new set of one label, and returns it. There must be fewer than MOST labels.
     uint32_t add()
     {
         if (next_ % BLOCK == 0) add_block();
@@ -28,7 +28,7 @@ public:
         parent(label) = label;
         return label;
     }
-    /// Number of labels so far, including labels that `append` skipped, which have 0 voxels.
+    /// Number of labels so far, including unused ones (0 voxels) that `append` skips to start at a new block.
     uint64_t size() const { return next_; }
 
     uint32_t root_of(uint32_t label)
@@ -47,13 +47,13 @@ public:
         return a;
     }
 
-    /// While labelling: the parent of a label. Afterwards, the caller may use the value for other purposes.
+    /// During labelling, the parent of a label. Afterwards, the caller may use the value for other purposes.
     uint32_t& parent(uint32_t label) { return blocks_[label / BLOCK]->parents[label % BLOCK]; }
     uint32_t parent(uint32_t label) const { return blocks_[label / BLOCK]->parents[label % BLOCK]; }
-    /// The number of voxels in the label's own runs.
+    /// Number of voxels in the runs that got this label.
     int64_t& voxels(uint32_t label) { return counts_[label / BLOCK]->at(label % BLOCK); }
 
-    /// Appends another forest. Its labels are shifted by the returned number.
+    /// Appends another forest. Returns the number that was added to its labels.
     uint64_t append(LabelForest&& other)
     {
         const uint64_t base = blocks_.size() * uint64_t{BLOCK};

@@ -12,7 +12,7 @@
 namespace shvr {
 namespace {
 
-/// The smallest voxel value at or above the threshold; null if there is none.
+/// Returns the smallest voxel value at or above the threshold; null if there is none.
 template <class T>
 std::optional<T> lowest_above(double threshold)
 {
@@ -27,8 +27,8 @@ std::optional<T> lowest_above(double threshold)
     }
 }
 
-/// Packs eight flags, bytes of 0 or 1, into one byte, the first flag in the lowest bit. The product holds flag i in bit
-/// 56 + i, and no two of its terms fall on one bit.
+/// Packs eight flags, bytes of 0 or 1, into one byte, the first flag in the lowest bit. The multiplication moves flag i
+/// to bit 56 + i; all its partial products are at different bits, so none of them carries.
 uint64_t gathered(const uint8_t* flags)
 {
     uint64_t eight;

@@ -1,5 +1,5 @@
 #pragma once
-// Represents a row's voxels at or above a threshold as one bit each, and finds the runs of such voxels. Any thread.
+// Converts rows of voxels to bits, set at or above a threshold, and bits to runs. Any thread.
 
 #include <bit>
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace shvr {
 
-/// The number of 64-bit words that hold the bits of a row of `voxels` voxels.
+/// Returns the number of 64-bit words for the bits of a row of `voxels` voxels.
 inline int64_t words_of_row(int64_t voxels)
 {
     return (voxels + 63) / 64;
@@ -18,15 +18,15 @@ inline int64_t words_of_row(int64_t voxels)
 
 class ThresholdBits {
 public:
-    /// `threshold` is in intensity units; +-infinity is allowed, NaN is not (SHVR_CHECK).
+    /// `threshold` is an intensity; it may be +-infinity but not NaN (SHVR_CHECK).
     ThresholdBits(VoxelType type, double threshold);
 
     VoxelType type() const { return type_; }
-    /// Whether a voxel with a value in the range can be at or above the threshold.
+    /// Whether voxels with values in `range` can be at or above the threshold.
     bool reaches(const ValueRange& range) const { return range.lower <= range.upper && range.upper >= threshold_; }
 
     /// Sets bit b of word w if voxel 64 w + b is at or above the threshold; NaN counts as below. Bits beyond the row
-    /// are 0. `voxels` has native byte order and the alignment of its type.
+    /// are 0. `voxels` are in native byte order and aligned for their type.
     void convert(std::span<const std::byte> voxels, std::span<uint64_t> words) const;
 
 private:
@@ -34,13 +34,13 @@ private:
     double threshold_;
 };
 
-/// Appends, for each run of set bits, its first voxel and the voxel after its last. Bits beyond `voxels` are 0.
+/// Appends the first voxel of each run of set bits, and the voxel after its last. Bits beyond `voxels` must be 0.
 inline void append_run_ends(std::span<const uint64_t> words, int64_t voxels, std::vector<uint32_t>& ends)
 {
     uint64_t before = 0;
     for (size_t word = 0; word < words.size(); ++word) {
         const uint64_t bits = words[word];
-        // An edge bit is set where a bit differs from the bit before it.
+        // An edge bit is set where a bit differs from the one before, which is at the start of a run or after its end.
         uint64_t edges = bits ^ (bits << 1 | before);
         before = bits >> 63;
         for (; edges != 0; edges &= edges - 1) ends.push_back(uint32_t(64 * word) + uint32_t(std::countr_zero(edges)));
