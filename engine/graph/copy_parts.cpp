@@ -6,7 +6,7 @@ namespace shvr {
 
 namespace {
 
-/// Collects regions into parts: adds each region to the last part, or to a new one if the last would become too large.
+/// Collects regions into parts: each region goes into the last part or, if that is full, into a new one.
 template <class Region>
 class Parts {
 public:

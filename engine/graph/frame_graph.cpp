@@ -19,7 +19,7 @@ Stages stages_of(const PassData& pass)
     return pass.kind == PassData::Kind::compute ? STAGE_COMPUTE : STAGE_TRANSFER;
 }
 
-/// Returns why a pass may not use this handle, worded for that pass; null if the handle is current.
+/// Returns why a pass may not use this handle, as the end of a message; null if the handle is current.
 std::optional<std::string> fault_of(Resource resource, const FrameGraph& graph)
 {
     if (resource.index >= graph.resources().size()) return "a handle that this graph did not make";
@@ -173,7 +173,7 @@ Resource FrameGraph::create(const std::string& name, const ResourceDesc& desc)
 Resource FrameGraph::upload_bytes(const std::string& name, std::span<const std::byte> bytes)
 {
     const Resource resource = create(name, buffer_desc(bytes.size()));
-    // The upload needs no barrier: a submission sees all earlier host writes (Vulkan 1.3, 7.9).
+    // Uploads need no barrier: a queue submission sees all earlier host writes (Vulkan 1.3, 7.9).
     resources_[resource.index].contents.assign(bytes.begin(), bytes.end());
     return resource;
 }
@@ -267,13 +267,13 @@ void FrameGraph::keep(Resource resource)
 
 namespace {
 
-/// Returns which passes are kept. A pass is kept if it has an effect outside the frame, or if a kept pass needs its
-/// output. A kept write also keeps earlier writers of the same resource, as passes may write only a part of it.
+/// Returns, for each pass, whether it is kept. A pass is kept if it has an effect outside the frame, or if a kept pass
+/// needs its output. A kept write also keeps the earlier writers of its resource, since it may write only a part.
 std::vector<bool> living_passes(const FrameGraph& graph)
 {
     const auto& passes = graph.passes();
     const auto& resources = graph.resources();
-    std::vector<bool> needed(resources.size());  // whether a later pass that is kept uses the resource
+    std::vector<bool> needed(resources.size());  // whether a kept pass later on uses the resource
     std::vector<bool> alive(passes.size());
     for (size_t r = 0; r < resources.size(); ++r) needed[r] = resources[r].kept;
     for (size_t i = passes.size(); i-- > 0;) {
@@ -288,7 +288,7 @@ std::vector<bool> living_passes(const FrameGraph& graph)
     return alive;
 }
 
-/// Returns the barrier that `pass` needs, given the accesses in flight.
+/// Returns the barrier that `pass` needs before it, given the accesses in flight; null if none.
 std::optional<Barrier> barrier_before(const PassData& pass, const std::vector<ResourceState>& states)
 {
     Barrier barrier;
@@ -309,7 +309,7 @@ std::optional<Barrier> barrier_before(const PassData& pass, const std::vector<Re
     return barrier;
 }
 
-/// Applies a barrier to the states. Barriers are global: they cover all resources in their stages.
+/// Updates the states for a barrier. Barriers are global: each covers all resources in its stages.
 void settle(const Barrier& barrier, std::vector<ResourceState>& states)
 {
     for (ResourceState& state : states) {
@@ -327,14 +327,14 @@ void record_use(const PassData& pass, std::vector<ResourceState>& states)
             state = {.written_by = stages};
             continue;
         }
-        // A barrier that waits for a read ordered after all other reads also waits for those other reads.
+        // If this read was ordered after all other reads, a barrier that waits for it also waits for the others.
         const bool is_after_all = (stages & ~state.after_reads) == 0;
         state.read_by = is_after_all ? stages : Stages(state.read_by | stages);
         state.after_reads = 0;
     }
 }
 
-/// Memory of resources that no later pass needs. Equal resources that are first used later can take this memory.
+/// Transient resources that no later pass uses, whose memory equal resources with a later first use can take over.
 class FreeMemory {
 public:
     FreeMemory(const FrameGraph& graph, const std::vector<bool>& alive)
@@ -366,7 +366,7 @@ public:
     }
 
 private:
-    /// Whether others may reuse the memory: not of imports, nor of resources that the host fills before the first pass.
+    /// Whether the memory may be shared. Excludes imports, and buffers that the host fills before the first pass.
     bool is_shared(uint32_t resource) const
     {
         return !resources_[resource].imported && resources_[resource].contents.empty();
@@ -396,7 +396,7 @@ CompiledGraph FrameGraph::compile() const
         const std::optional<uint32_t> before = free_memory.take(resource);
         if (!before) return;
         compiled.memory_of[resource] = compiled.memory_of[*before];
-        states[resource] = states[*before];  // the first use, a write, waits for the last uses of `before`
+        states[resource] = states[*before];  // the first use, a write, then waits for the last uses of `before`
     };
 
     for (uint32_t i = 0; i < passes_.size(); ++i) {

@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The step of each pass, by the pass's index, and the first and last step that use each resource.
+/// The step of each pass (indexed by pass), and the first and last step that use each resource.
 struct Schedule {
     struct Lifetime {
         size_t first_step = 0, last_step = 0;
@@ -74,7 +74,7 @@ std::string desc_text(const ResourceDesc& desc)
     return sentence(shvr::name_of(desc.format), " ", extent_text(desc.texels), ", ", bytes_text(desc.bytes));
 }
 
-/// Returns several lines as one DOT string. Names may contain any characters.
+/// Returns several lines as one quoted DOT string, with any special characters escaped.
 std::string quoted(const std::vector<std::string>& lines)
 {
     std::string text = "\"";
@@ -195,13 +195,13 @@ std::string to_graphviz(const FrameGraph& graph, const CompiledGraph& compiled)
         for (const Binding& binding : pass.bindings) {
             const std::string label = " [label=" + quoted({binding.name}) + look;
             if (binding.reads) text += sentence("    resource", binding.resource, " -> pass", i, label, "];\n");
-            // The edge of a later write points back up; constraint=false keeps the edge from changing the layout.
+            // An edge back up to a resource would disturb the layout, so constraint=false excludes it from the ranking.
             const char* const ending = binding.reads || is_placed[binding.resource] ? ", constraint=false];\n" : "];\n";
             if (binding.writes) text += sentence("    pass", i, " -> resource", binding.resource, label, ending);
             is_placed[binding.resource] = true;
         }
     }
-    // Invisible edges arrange the passes from top to bottom in order of execution.
+    // Invisible edges arrange the passes from top to bottom in the order of execution.
     for (size_t step = 0; step + 1 < compiled.steps.size(); ++step)
         text += sentence("    pass", compiled.steps[step].pass, " -> pass", compiled.steps[step + 1].pass,
                          " [style=invis];\n");

@@ -1,6 +1,6 @@
 #pragma once
-// A frame graph as text: for people (Graphviz) and for programs (JSON). Both show the declared graph and the result of
-// compile(): culled passes, barriers, lifetimes. Any thread may call these functions.
+// Writes a frame graph as text: for people (Graphviz) and for programs (JSON). Both show the declared graph and the
+// result of compile(): culled passes, barriers, lifetimes. Any thread may call these functions.
 
 #include <string>
 
@@ -8,11 +8,11 @@
 
 namespace shvr {
 
-/// Returns a step's barrier as text: "compute -> transfer", with "(order only)" if memory is not synchronised.
+/// Describes a barrier: "compute -> transfer", with "(order only)" if it does not synchronise memory.
 std::string to_text(const Barrier& barrier);
 
-/// Returns input for `dot`. Boxes are passes in order of execution, each with the barrier before it; ellipses are
-/// resources, double-lined if they outlive the frame; culled passes and resources are dashed and grey.
+/// Returns input for `dot`. Boxes are passes in order of execution, each with the barrier before it. Ellipses are
+/// resources, with a double line if they outlive the frame. Culled passes and resources are dashed and grey.
 std::string to_graphviz(const FrameGraph& graph, const CompiledGraph& compiled);
 
 /// {"passes": [...], "resources": [...]}; README.md lists the keys.
