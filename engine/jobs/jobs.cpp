@@ -18,14 +18,14 @@ double steady_seconds()
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Estimates the time left from the fractions done `seconds` ago and now; below 0: unknown.
+/// Estimates the time left from the present fraction and the fraction `seconds` ago; below 0: unknown.
 double estimate_left(double first_fraction, double fraction, double seconds)
 {
     const double gone = fraction - first_fraction;
     return first_fraction >= 0.0 && gone > 0.0 ? std::max(0.0, (1.0 - fraction) / gone * seconds) : -1.0;
 }
 
-/// Returns the message of the exception being handled. `what`: the title of the job that threw the exception.
+/// Returns the message of the exception being handled. `what` is the title of the job that threw it.
 std::string failure_in_words(const std::string& what)
 {
     try {
@@ -45,7 +45,7 @@ std::string failure_in_words(const std::string& what)
 
 }  // namespace
 
-/// A job. `function`, `number` and `what` are set before the worker sees it; the lock guards the rest while it runs.
+/// A job. `function`, `number` and `what` stay unchanged once the worker sees it; the lock guards all other members.
 struct Jobs::Job {
     Number number = 0;
     std::string what;
@@ -165,7 +165,7 @@ void Jobs::work()
         if (is_closing_) return;
         running_ = std::move(waiting_.front());
         waiting_.pop_front();
-        Job& job = *running_;  // safe without the lock: only this thread moves or destroys a running job
+        Job& job = *running_;  // needs no lock: only this thread moves or destroys a running job
         job.begun = job.stretch_begun = seconds_();
         Reporter reporter(*this, job);
         lock.unlock();

@@ -9,9 +9,9 @@
 //   ...
 //   for (const Jobs::Finished& job : jobs.finish()) window.say(job);    // once per frame
 //
-// Everything but a job's function and `wake` is called on the main thread, and nothing here waits for the worker
-// except `wait` and the destructor. Functions and completions are destroyed on the main thread, so they may own objects
-// of that thread. The threads share the queues and each job's progress, both under one lock, and an atomic flag per
+// Everything except a job's function and `Options::wake` is called on the main thread, and only wait() and the
+// destructor wait for the worker. Functions and completions are destroyed on the main thread, so they may own objects
+// of that thread. Both threads use the queues and each job's progress, under one lock, and an atomic flag for each
 // job.
 
 #include <condition_variable>
@@ -32,26 +32,26 @@ class Jobs {
 public:
     using Number = uint64_t;  ///< job numbers ascend in the order of `start`
     using Completion = std::function<void()>;
-    /// Runs on the worker and reports progress often; a report throws `Stopped` once the job is cancelled. The returned
-    /// completion may be empty.
+    /// The work of a job, which runs on the worker and reports its progress often. A report throws `Stopped` once the
+    /// job is cancelled. The returned completion may be empty.
     using Function = std::function<Completion(ProgressReporter&)>;
 
     struct Options {
-        std::function<void()> wake{};       ///< called on the worker when a job has ended, to wake a sleeping loop
+        std::function<void()> wake{};       ///< called on the worker when a job has ended, e.g. to wake the main loop
         std::function<double()> seconds{};  ///< time since any fixed moment, callable from any thread; empty:
                                             ///< a steady clock
-        Number first = 1;                   ///< number of the first job; lets several workers use distinct numbers
+        Number first = 1;                   ///< number of the first job, so that several workers can use distinct ones
     };
     Jobs();
     explicit Jobs(Options options);
-    /// Cancels all jobs and waits for the running one. No completions run after this.
+    /// Cancels all jobs and waits for the running one. No more completions run.
     ~Jobs();
     Jobs(const Jobs&) = delete;
 
-    /// `what`: the job's title for lists and messages, as in "exporting stem.swc".
+    /// Adds a job to the queue. `what` is its title for lists and messages, as in "exporting stem.swc".
     Number start(std::string what, Function function);
-    /// A waiting job will not start; a running job ends at its next progress report. The job's completion will not run,
-    /// even if its function completes. An unknown or finished number is ignored.
+    /// Cancels a job. If it waits, it never starts; if it runs, it ends at its next progress report. Its completion
+    /// does not run, even if its function completes. An unknown number, or that of a job that has ended, is ignored.
     void cancel(Number number);
     void cancel_all();
 
@@ -66,23 +66,23 @@ public:
         bool is_waiting = false;
         bool is_cancelled = false;
     };
-    /// The running job, then the waiting jobs in order. Jobs that have ended are not included.
+    /// Returns the running job, then the waiting jobs in order, without jobs that have ended.
     std::vector<State> states() const;
-    /// Whether all is done: no job is running or waiting, and no ended job's completion is still to run.
+    /// Whether everything is done: no job is running or waiting, and no completion remains to be run.
     bool is_idle() const;
 
     struct Finished {
         Number number = 0;
         std::string what;
-        std::string failure;  ///< message of an exception from the function or its completion; empty if none, or only
-                              ///< `Stopped`
+        std::string failure;  ///< message of an exception from the function or its completion; empty: no exception, or
+                              ///< only `Stopped`
         bool was_cancelled = false;
         bool is_done() const { return failure.empty() && !was_cancelled; }
     };
-    /// Runs the completions of jobs that have ended since the last call, in order, and returns those jobs. A completion
+    /// Runs the completions of the jobs that have ended since the last call, in order. Returns these jobs. Completions
     /// may start and cancel jobs.
     std::vector<Finished> finish();
-    /// Waits until no job is left, and finishes all of them. For tests, and before the program ends.
+    /// Waits until all jobs have ended, and runs their completions. For tests, and before the program ends.
     std::vector<Finished> wait();
 
 private:

@@ -1,6 +1,6 @@
 #pragma once
-// Receives the progress of work in several stages, and tells the work when to stop. The progress goes to a job
-// (jobs.h), the progress line of a command, or nowhere. Used by one thread at a time, the working thread.
+// Receives the progress of work in several stages, and tells the work when to stop. A reporter passes the progress to a
+// job (jobs.h), to a command's progress line, or nowhere. Only the working thread uses it.
 
 #include <atomic>
 #include <string>
@@ -17,17 +17,17 @@ public:
     ProgressReporter(const ProgressReporter&) = delete;
     ProgressReporter& operator=(const ProgressReporter&) = delete;
 
-    /// Starts a stage, as in "writing stem.swc", whose time left is estimated from scratch. Returns a function that
-    /// reports the stage's progress. Both throw `Stopped` if the work is to stop; the function must not outlive this.
+    /// Starts a stage such as "writing stem.swc", with a new estimate of the time left. Returns a function that reports
+    /// the stage's progress and must not outlive this reporter. Both throw `Stopped` if the work should stop.
     virtual Progress begin(const std::string& what) = 0;
-    /// Reports progress as the function returned by begin() does, but with a detail, as in "120 MB/s", and with the
-    /// caller's better estimate of the time left.
+    /// Reports progress like the function that begin() returns, but with a detail such as "120 MB/s", and with the
+    /// caller's own estimate of the time left, which is more accurate.
     virtual void show(double fraction, const std::string& detail, double seconds_left) = 0;
-    /// The flag that asks the work to stop, for functions that poll it themselves. It outlives the work.
+    /// Returns the flag that is set when the work should stop, for functions that poll it. The flag outlives the work.
     virtual const std::atomic<bool>& stop_requested() const = 0;
 };
 
-/// For callers that need only the fraction of each stage, or no progress at all.
+/// A reporter for callers that need only the fraction of each stage, or no progress at all.
 class PlainReporter final : public ProgressReporter {
 public:
     explicit PlainReporter(Progress progress = {}) : progress_(std::move(progress)) {}
