@@ -14,14 +14,14 @@ namespace {
 
 constexpr double FIT_FOV_DEGREES = 30.0;
 constexpr double FIT_MARGIN = 1.05;
-/// Sine of the smallest angle between `up` and the view at which `up` still determines the picture's vertical.
+/// Sine of the minimum angle between `up` and the view direction; below it, the picture's vertical is undefined.
 constexpr double MIN_UP_SINE = 1e-6;
-/// Distance of the near plane from a perspective eye, in units of the finest spacing; see `ray_planes`.
+/// Distance of the near plane from a perspective eye inside the volume, in units of the finest spacing (`ray_planes`).
 constexpr double NEAR_HAIR = 1e-6;
 
 struct Side {
     const char* name;
-    glm::dvec3 back;  ///< direction from the volume's centre to the eye
+    glm::dvec3 back;  ///< direction from the volume's centre towards the eye
     glm::dvec3 up;
 };
 constexpr Side SIDES[] = {
@@ -50,7 +50,7 @@ struct Axes {
     glm::dvec3 right, up, forward;
 };
 
-/// Returns the camera's axes; null if the camera has no direction.
+/// Returns the camera's axes; null if its vectors do not determine them.
 std::optional<Axes> frame_of(const Camera& camera)
 {
     const glm::dvec3 view = camera.target - camera.eye;
@@ -69,7 +69,7 @@ struct Plane {
     glm::dvec3 corner, dx, dy;
 };
 
-/// Returns the pixel grid, in voxel space, whose middle is `shift_right` to the right of `middle` (in volume space).
+/// Returns the pixel grid, in voxel space, whose centre is `shift_right` to the right of `middle` (in volume space).
 Plane pixel_plane(const glm::dvec3& middle, double pixel, const Axes& axes, const glm::uvec2& pixels,
                   double shift_right, const glm::dvec3& spacing)
 {
@@ -157,14 +157,14 @@ RayPlanes ray_planes(const Camera& camera, const glm::uvec2& pixels, const Volum
     const Sphere sphere = bounding_sphere(volume);
     const bool is_perspective = camera.projection == Camera::Projection::perspective;
 
-    // Points on the view axis, the line through eye and target, are computed from whichever of the two is closer to the
-    // volume, since the coordinates of a far eye are rounded more coarsely.
+    // Points on the view axis, the line through eye and target, are computed from whichever of these two is closer to
+    // the volume, since the coordinates of a point far away are rounded more coarsely.
     const bool anchor_is_eye = glm::distance(camera.eye, sphere.centre) <= glm::distance(camera.target, sphere.centre);
     const glm::dvec3 anchor = anchor_is_eye ? camera.eye : camera.target;
     const double anchor_depth = anchor_is_eye ? 0.0 : glm::distance(camera.eye, camera.target);
     const double centre_offset = glm::dot(sphere.centre - anchor, axes.forward);
 
-    // The following are distances along the view axis, from the anchor.
+    // All following distances are along the view axis, measured from the anchor.
     const double hair =
         is_perspective ? NEAR_HAIR * std::min({volume.spacing.x, volume.spacing.y, volume.spacing.z}) : 0.0;
     const double clip_near = std::max(camera.near_distance, hair) - anchor_depth;
@@ -219,7 +219,7 @@ std::vector<std::string> camera_sides()
 std::string side_of_largest_face(const VolumeInfo& volume)
 {
     const glm::dvec3 extent = glm::dvec3(volume.size) * volume.spacing;
-    // Two faces share one side, so the ratio of their areas is that of their other sides; no product can overflow.
+    // Two faces share one side, so the ratio of their areas is the ratio of their other sides, which cannot overflow.
     const bool right_is_larger = extent.y > 2.0 * extent.x, top_is_larger = extent.y > 2.0 * extent.z;
     if (!right_is_larger && !top_is_larger) return "front";
     return extent.z >= extent.x ? "right" : "top";

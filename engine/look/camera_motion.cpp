@@ -17,7 +17,7 @@ bool is_perspective(const Camera& camera)
     return camera.projection == Camera::Projection::perspective;
 }
 
-/// Returns the pixel that shows the line from eye to target.
+/// Returns the pixel through which the line from eye to target passes.
 glm::dvec2 axis_pixel(const Camera& camera, const glm::uvec2& pixels)
 {
     return 0.5 * glm::dvec2(pixels) - glm::dvec2(camera.shift_right * pixels.y, 0.0);
@@ -91,7 +91,7 @@ Camera zoomed(const Camera& camera, const glm::uvec2& pixels, const glm::dvec2& 
 
 namespace {
 
-/// Adapts the clip distances of `is` to its moved eye: the planes stay in place. Both cameras look along `forward`.
+/// Changes the clip distances of `is`, so that its planes stay where those of `was` are. Both look along `forward`.
 void keep_clip_planes(const Camera& was, Camera& is, const glm::dvec3& forward)
 {
     const double way = glm::dot(was.eye - is.eye, forward);
@@ -140,7 +140,7 @@ Camera fitted(const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& 
         height = std::max(height, 2.0 * reach);
         distance = std::max(distance, reach / slope - glm::dot(at, axes.forward));
     }
-    // The eye of an orthographic camera must also lie in front of the box, since nothing behind the eye is visible.
+    // The eye of an orthographic camera must also be outside of the box, since nothing behind the eye is visible.
     if (!is_perspective(camera)) distance = MARGIN * glm::length(half);
     Camera result = camera;
     result.target = center;

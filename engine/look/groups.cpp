@@ -8,11 +8,11 @@ namespace shvr {
 
 namespace {
 
-/// Found by the search in tests/unit/look/group_palette_test.cpp; the first colours differ most from each other.
+/// Found by the search in tests/unit/look/group_palette_test.cpp; the most distinct colours come first.
 constexpr const char* GROUP_COLORS[] = {"#fe3099", "#1817ff", "#cbf200", "#09979d", "#ce97ff",
                                         "#1b5b3d", "#95088c", "#686505", "#02cac2", "#9d61f7"};
 
-/// Returns the decoded colours. Decodes them only once, since every picture needs the looks of all groups.
+/// Returns the decoded colours, which are cached, since every picture needs the looks of all groups.
 const std::array<glm::dvec3, std::size(GROUP_COLORS)>& group_colors()
 {
     static const auto colors = [] {
@@ -46,7 +46,7 @@ ColorGroup group_of(const Groups& groups, uint8_t group)
         const auto found = groups.find(at);
         const GroupSettings settings = found == groups.end() ? GroupSettings{} : found->second;
         if (at == group && !settings.name.empty()) look.name = settings.name;
-        // A root without a colour of its own gets one of the ten colours, which its descendants inherit.
+        // If no group up to the root states a colour, the root's default applies, one of the ten colours above.
         if (!color) color = settings.color;
         if (!color && settings.parent == 0) color = default_group(at).color;
         if (!opacity) opacity = settings.opacity;

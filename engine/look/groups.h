@@ -1,7 +1,7 @@
 #pragma once
-// Colour groups override the transfer function where a voxel is painted. They form a tree: a group inherits settings
-// from its parent unless it has its own, and hiding or locking a group applies to all its descendants. Changing a
-// group's settings changes no voxel.
+// Colour groups override the transfer function where voxels are painted. They form a tree: a group inherits from its
+// parent each setting that it lacks, and hiding or locking a group also affects all its descendants. Changing a group's
+// settings changes no voxel.
 
 #include <bitset>
 #include <cstdint>
@@ -17,13 +17,13 @@ namespace shvr {
 struct GroupSettings {
     std::string name;                 ///< empty: "group N"
     uint8_t parent = 0;               ///< 0: none
-    std::optional<glm::dvec3> color;  ///< linear light; default: the parent's; for a root: one of ten, cyclically
+    std::optional<glm::dvec3> color;  ///< linear light; default: the parent's, or a palette colour for a root
     std::optional<double> opacity;    ///< per reference length; default: the parent's; for a root: 1
-    bool visible = true;              ///< false: its voxels and those of its descendants are not drawn
-    bool locked = false;              ///< true: no brush adds voxels to it or its descendants, or removes them
+    bool visible = true;              ///< false: its voxels and those of its descendants are hidden
+    bool locked = false;              ///< true: brushes change neither its voxels nor its descendants' voxels
     bool operator==(const GroupSettings&) const = default;
 };
-using Groups = std::map<uint8_t, GroupSettings>;  ///< keys 1 ... 255; without an entry, a group has only defaults
+using Groups = std::map<uint8_t, GroupSettings>;  ///< keys 1 ... 255; a group without an entry has default settings
 
 /// The effective look of a group.
 struct ColorGroup {
@@ -34,23 +34,23 @@ struct ColorGroup {
     bool operator==(const ColorGroup&) const = default;
 };
 
-/// The minimum CIEDE2000 difference between any two of the ten colours, and between any of them and either the default
-/// transfer function or white; in normal vision and simulated protanopia, deuteranopia and tritanopia (Machado 2009).
+/// The minimum CIEDE2000 difference between any two of the ten colours, and between them and the default transfer
+/// function or white; in normal vision and simulated protanopia, deuteranopia and tritanopia (Machado 2009).
 inline constexpr double MIN_GROUP_DIFFERENCE = 13.0;
-/// Returns one of ten distinguishable colours, which repeat. Group 0 (unpainted) is fully transparent.
+/// Returns default settings; ten distinguishable colours repeat cyclically. Group 0 (unpainted) is fully transparent.
 ColorGroup default_group(uint8_t group);
 ColorGroup group_of(const Groups& groups, uint8_t group);
 
 /// Whether the group or one of its ancestors is locked.
 bool is_locked(const Groups& groups, uint8_t group);
-/// Returns `is_locked` for every group; [0], unpainted voxels, is never set.
+/// Returns `is_locked` for every group; element 0 (unpainted voxels) is never set.
 std::bitset<256> locked_groups(const Groups& groups);
 
 /// Returns the parent; 0 if the group has none.
 uint8_t parent_of(const Groups& groups, uint8_t group);
-/// Whether `group` is `above` or one of its descendants. If so, `group` must not become the parent of `above`.
+/// Whether `group` is `above` or a descendant of it. If so, `group` must not become the parent of `above`.
 bool is_within(const Groups& groups, uint8_t group, uint8_t above);
-/// Returns a group that is its own ancestor, if any. The other functions require groups without cycles.
+/// Returns a group that is its own ancestor, if there is one. The other functions require groups without cycles.
 std::optional<uint8_t> group_in_cycle(const Groups& groups);
 
 }  // namespace shvr

@@ -1,5 +1,5 @@
 #pragma once
-// The look of a volume: all inputs of a picture except camera and probe. Plain values.
+// The look of a volume: every input of a picture, except the camera and the probe. Plain values.
 
 #include "engine/look/groups.h"
 #include "engine/look/panes.h"
@@ -16,7 +16,7 @@ struct Look {
     CutBox cut;
     RenderSettings render;
     SliceSettings slices;
-    bool shows_meshes = true;  ///< a trace, surfaces and the probe's ball
+    bool shows_meshes = true;  ///< the trace, surfaces and the probe's ball
 };
 
 /// Whether a light uses ambient occlusion.

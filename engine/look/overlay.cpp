@@ -12,14 +12,14 @@ namespace {
 
 constexpr double WIDTH = 1.5;        ///< pixels
 constexpr double TRACE_WIDTH = 2.5;  ///< for highlighted parts of the trace
-constexpr double HALO = 2.0;         ///< extra pixels around a stroke, which set it off from its background
+constexpr double HALO = 2.0;         ///< pixels added around a stroke, to set it off from what is behind it
 constexpr double DASH = 5.0, GAP = 4.0;
 constexpr glm::dvec3 DARK(0.02);
-/// Colours of the axes x, y and z, and (all four) of the edges of a frustum that lead away from the eye.
+/// Colours of the axes x, y and z. All four are also used for the frustum's edges away from the eye.
 constexpr std::array<glm::dvec3, 4> COLORS{glm::dvec3(0.87, 0.05, 0.03), glm::dvec3(0.05, 0.55, 0.08),
                                            glm::dvec3(0.06, 0.22, 0.95), glm::dvec3(0.95, 0.45, 0.02)};
 
-/// Returns the part of a line that lies inside a pane with a small margin (Liang and Barsky 1984).
+/// Clips a line to the pane plus a small margin (Liang and Barsky 1984); null if nothing is left.
 std::optional<std::pair<glm::dvec2, glm::dvec2>> clipped(const glm::dvec2& from, const glm::dvec2& to,
                                                          const glm::uvec2& pixels)
 {
@@ -62,7 +62,7 @@ public:
         for (size_t i = 0; i < points.size(); ++i)
             line(points[i], points[(i + 1) % points.size()], color, false, width);
     }
-    /// Returns the strokes, all halos first, so that no halo covers another stroke.
+    /// Returns the strokes, preceded by the halos of all of them, so that no halo covers another stroke.
     std::vector<Stroke> taken()
     {
         std::vector<Stroke> all;
@@ -84,7 +84,7 @@ private:
     std::vector<Stroke> strokes_;
 };
 
-/// Returns the corners of a camera's frustum: near 0 ... 3 and far 4 ... 7, each in the order top left, top right,
+/// Returns the corners of a camera's frustum, near 0 ... 3 and far 4 ... 7, both in the order top left, top right,
 /// bottom left, bottom right. Without a far plane, the frustum ends where the volume does.
 std::array<glm::dvec3, 8> frustum_corners(const Camera& camera, const glm::uvec2& pixels, const VolumeInfo& volume)
 {
@@ -110,7 +110,7 @@ void add_frustum(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, c
         const auto from = project(pane.shot.camera, pixels, corners[a]);
         const auto to = project(pane.shot.camera, pixels, corners[b]);
         if (!from || !to || corners[a] == corners[b]) return;
-        // Edges in front of the frustum's middle are solid; edges behind it are stippled.
+        // Edges that lie nearer than the frustum's centre, as seen in this pane, are solid; others are stippled.
         const bool is_far = glm::dot(0.5 * (corners[a] + corners[b]) - middle, forward) > 0.0;
         strokes.line(from->pixel, to->pixel, 0.5 * (COLORS[a % 4] + COLORS[b % 4]), is_far);
     };
@@ -120,7 +120,7 @@ void add_frustum(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, c
             edge(plane + size_t(a), plane + size_t(b));
 }
 
-/// Draws the lines in which the other two slices cut this slice, in the colours of their axes, with a gap at the probe.
+/// Draws where the other two slices cut this one: two lines in the colours of their axes, with a gap at the probe.
 void add_cross(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, const OverlayScene& scene)
 {
     constexpr double OPEN = 12.0;  ///< pixels
@@ -139,7 +139,7 @@ void add_cross(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, con
     strokes.line({pixel.x + OPEN, pixel.y}, {end.x, pixel.y}, level);
 }
 
-/// Draws an arrow at the border of the pane, pointing towards the probe.
+/// Draws an arrow at the border of the pane that points towards the probe.
 void add_arrow(Strokes& strokes, const glm::uvec2& pixels, const glm::dvec2& way, const glm::dvec3& color)
 {
     constexpr double SPARE = 14.0, SHAFT = 34.0, HEAD = 11.0;
@@ -176,18 +176,18 @@ void add_probe(Strokes& strokes, const Camera& camera, const glm::uvec2& pixels,
     if (const auto at = project(camera, pixels, probe.center)) {
         way = at->pixel - 0.5 * glm::dvec2(pixels);
         const glm::dvec2 inside = glm::abs(way) - 0.5 * glm::dvec2(pixels);
-        if (inside.x < 0.0 && inside.y < 0.0) return;  // the ball covers the whole pane, or contains the eye
+        if (inside.x < 0.0 && inside.y < 0.0) return;  // in view: the ball covers the whole pane or contains the eye
     }
     if (glm::length(way) > 1e-9) add_arrow(strokes, pixels, way, probe.color);
 }
 
-/// Draws a ball as a ring, large enough to be seen however far away the ball is.
+/// Draws a ball as a ring, with a minimum size in pixels so that it is visible from any distance.
 void add_ball(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, const OverlayScene::Ball& ball)
 {
     constexpr double LEAST = 5.0, APART = 2.5;  ///< pixels
     const Camera& camera = pane.shot.camera;
     double radius = ball.radius;
-    if (pane.kind == Pane::Kind::slice) {  // drawn as the circle in which the plane cuts the ball
+    if (pane.kind == Pane::Kind::slice) {  // drawn as the circle in which the slice cuts the ball
         const double depth = glm::dot(ball.center - camera.eye, axes_of(camera).forward);
         const double away = depth - 0.5 * (camera.near_distance + camera.far_distance);
         if (!(std::abs(away) < radius)) return;
@@ -207,7 +207,7 @@ void add_ball(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, cons
 
 void add_trace(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, const OverlayScene& scene)
 {
-    if (pane.kind != Pane::Kind::slice)  // slices show no such lines, since the lines do not lie in their planes
+    if (pane.kind != Pane::Kind::slice)  // not in slices, since the lines do not lie in their planes
         for (const OverlayScene::Line& line : scene.lines) {
             const auto from = project(pane.shot.camera, pixels, line.from);
             const auto to = project(pane.shot.camera, pixels, line.to);
@@ -216,7 +216,7 @@ void add_trace(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, con
     for (const OverlayScene::Ball& ball : scene.balls) add_ball(strokes, pane, pixels, ball);
 }
 
-/// Draws a box's edges in the colours of their axes: solid if an adjacent face faces the viewer, stippled if not.
+/// Draws a box's edges in the colours of their axes: solid if they are visible from outside, otherwise stippled.
 void add_box(Strokes& strokes, const Camera& camera, const glm::uvec2& pixels, const OverlayScene::Box& box)
 {
     const CameraAxes axes = axes_of(camera);
@@ -232,11 +232,11 @@ void add_box(Strokes& strokes, const Camera& camera, const glm::uvec2& pixels, c
             if (side & 2) from[third] = box.upper[third];
             to = from;
             to[axis] = box.upper[axis];
-            // Solid edges: at least one of the two faces that meet in the edge faces the viewer.
+            // An edge is visible if at least one of the two faces that meet in it faces the viewer.
             const glm::dvec3 to_viewer = is_perspective ? camera.eye - 0.5 * (from + to) : -axes.forward;
             const auto faces = [&](int normal) { return (from[normal] - middle[normal]) * to_viewer[normal] > 0.0; };
             const bool is_seen = faces(second) || faces(third);
-            if (is_perspective) {  // only the part in front of the eye
+            if (is_perspective) {  // clips the edge to the part in front of the eye
                 const double begin = depth_of(from), end = depth_of(to);
                 if (begin < nearest && end < nearest) continue;
                 const glm::dvec3 way = to - from;
@@ -248,7 +248,7 @@ void add_box(Strokes& strokes, const Camera& camera, const glm::uvec2& pixels, c
         }
 }
 
-/// Calls `paint` for each pixel of `pane` that a stroke covers, with the coverage. `origin`: of stroke coordinates.
+/// Calls `paint` with each pixel of `pane` that a stroke covers, and the coverage. `origin` is the strokes' origin.
 template <class Paint>
 void for_each_covered(const Stroke& stroke, const glm::uvec2& origin, const PixelBox& pane, const Paint& paint)
 {
@@ -258,7 +258,7 @@ void for_each_covered(const Stroke& stroke, const glm::uvec2& origin, const Pixe
     const glm::dvec2 upper = glm::min(glm::ceil(glm::max(from, to) + reach), glm::dvec2(pane.end));
     const glm::dvec2 way = to - from;
     const double square = glm::dot(way, way);
-    // A long stroke covers only a short piece of each row; the rest of the row is skipped.
+    // Finds the short piece of each row that a long stroke covers, so that the rest of the row can be skipped.
     const auto x_at = [&](double y) {
         return way.y == 0.0 ? 0.0 : from.x + std::clamp((y - from.y) / way.y, 0.0, 1.0) * way.x;
     };
@@ -321,7 +321,7 @@ std::vector<Stroke> strokes_of(const Pane& pane, const OverlayScene& scene, cons
     if (pane.kind == Pane::Kind::map || pane.kind == Pane::Kind::slice) add_border(strokes, pane, pixels);
     if (pane.kind == Pane::Kind::map) add_frustum(strokes, pane, pixels, scene, volume);
     if (pane.kind == Pane::Kind::slice) add_cross(strokes, pane, pixels, scene);
-    // An anaglyph gets no outline: it would be drawn for one camera only, and two eyes would see it at two depths.
+    // Anaglyphs get no outline: it can only be drawn for one camera, so the two eyes would see it at a wrong depth.
     if ((scene.probe.is_outlined || scene.probe.has_arrow) && pane.kind != Pane::Kind::slice && !pane.shot.right_eye)
         add_probe(strokes, pane.shot.camera, pixels, scene.probe);
     if (!pane.shot.right_eye) add_trace(strokes, pane, pixels, scene);

@@ -10,8 +10,8 @@ namespace shvr {
 namespace {
 
 constexpr uint32_t MIN_PANE = 16;      ///< pixels a side
-constexpr double SLICE_MARGIN = 1.05;  ///< height of a slice's view relative to the volume
-constexpr double MAP_MARGIN = 1.5;     ///< likewise for a map, which also shows the camera that looks at the volume
+constexpr double SLICE_MARGIN = 1.05;  ///< height of a slice's view, relative to the volume's
+constexpr double MAP_MARGIN = 1.5;     ///< likewise for maps, which also show the camera outside of the volume
 
 PixelBox part_of(const glm::uvec2& pixels, const glm::uvec2& counts, const glm::uvec2& at)
 {
@@ -23,13 +23,13 @@ glm::uvec2 size_of(const PixelBox& box)
     return box.end - box.begin;
 }
 
-/// Returns the height of an orthographic view that contains `extent` (width, height).
+/// Returns the height of an orthographic view that shows all of `extent` (width, height).
 double height_for(const glm::dvec2& extent, const glm::uvec2& pixels)
 {
     return std::max(extent.y, extent.x * pixels.y / pixels.x);
 }
 
-/// Returns a map, the whole volume from a side. `around`: height of the view relative to that of the volume.
+/// Returns a map: the whole volume from a side. `around` is the height of the view relative to that of the volume.
 Pane map_pane(const std::string& side, const PixelBox& box, const VolumeInfo& volume, double around)
 {
     Camera camera = camera_looking(side, volume);
@@ -41,7 +41,7 @@ Pane map_pane(const std::string& side, const PixelBox& box, const VolumeInfo& vo
     return {.kind = Pane::Kind::map, .shot = camera, .box = box, .name = side};
 }
 
-/// Returns the voxel at the centre of slices.
+/// Returns the voxel at the centre of all slices.
 glm::dvec3 middle_of(const SliceSettings& slices, const VolumeInfo& volume, const glm::dvec3& probe_voxel)
 {
     const glm::dvec3 size(volume.size);
@@ -49,15 +49,15 @@ glm::dvec3 middle_of(const SliceSettings& slices, const VolumeInfo& volume, cons
     return glm::clamp(slices.center.value_or(probe_voxel), glm::dvec3(0.0), size);
 }
 
-/// Returns the axis of the volume that is closest to a direction.
+/// Returns the axis of the volume that is closest to `direction`.
 int axis_along(const glm::dvec3& direction)
 {
     const glm::dvec3 size = glm::abs(direction);
     return size.x > size.y ? (size.x > size.z ? 0 : 2) : size.y > size.z ? 1 : 2;
 }
 
-/// Returns the slice through the probe that is perpendicular to `axis`, seen from the same side as the volume: z from
-/// the top, y from the front, x from the right.
+/// Returns the slice through the probe that is perpendicular to `axis`: z seen from the top, y from the front, x from
+/// the right, like the volume in these views.
 Pane slice_pane(int axis, const PixelBox& box, const VolumeInfo& volume, const glm::dvec3& probe_voxel,
                 const SliceSettings& slices)
 {
@@ -66,8 +66,8 @@ Pane slice_pane(int axis, const PixelBox& box, const VolumeInfo& volume, const g
     Camera& camera = pane.shot.camera;
     const glm::dvec3 forward = glm::normalize(camera.target - camera.eye);
     const glm::dvec3 size(volume.size);
-    // The limit lies slightly below the volume's end, even after rounding to a kernel's floats: a plane exactly at the
-    // end has no inside, and would be drawn without an edge.
+    // The slice must stay slightly inside the volume's end, even after a kernel's rounding to floats: exactly at the
+    // end, the volume would be drawn without an edge.
     constexpr double LAST = 1.0 - 1e-6;
     const double voxel = std::clamp(probe_voxel[axis], 0.0, LAST * size[axis]);
     if (slices.center || slices.zoom > 1.0) {
@@ -118,7 +118,7 @@ std::pair<Camera, Camera> eyes_of(const Camera& camera, const StereoSettings& se
         const glm::dvec3 way = double(side) * half * axes.right;
         eye.eye += way;
         if (half > 0.0 && (settings.toe_in || !is_perspective)) {
-            eye.up = axes.up;  // both eyes rotate about the up vector, so that neither rolls
+            eye.up = axes.up;  // both eyes rotate about this up vector, so that neither eye rolls
             continue;
         }
         eye.target += way;
@@ -187,7 +187,7 @@ SliceSettings slices_following(const SliceSettings& slices, const std::vector<Pa
 {
     const glm::dvec3 seen = glm::clamp(probe_voxel, glm::dvec3(0.0), glm::dvec3(volume.size)) * volume.spacing;
     glm::bvec3 follows(false);
-    int held_axis = -1;  // normal axis of the slice under the mouse, if any; slices then move only along it
+    int held_axis = -1;  // normal of the slice under the mouse, if the probe is visible there; others then do not move
     for (size_t i = 0; i < panes.size(); ++i) {
         const Pane& pane = panes[i];
         if (!pane.shot.is_slice) continue;

@@ -1,6 +1,6 @@
 #pragma once
-// The views that make up a picture: a single view; one for each eye; maps that show where the camera is; or slices
-// through the probe. A picture is a list of panes; each pane is a camera and a rectangle. Pure; any thread.
+// The views that make up a picture: a single view; one view per eye; maps that show where the camera is; or slices
+// through the probe. A picture is a list of panes, each with a camera and a rectangle. Pure functions; any thread.
 
 #include <optional>
 #include <string>
@@ -13,9 +13,9 @@ namespace shvr {
 
 enum class Arrangement {
     single,
-    stereo,    ///< a pane for each eye, or one pane for both
-    overview,  ///< the camera's view, and the volume from the top, the front and the right, with the camera's frustum
-    slices     ///< the camera's view, and three planes through the probe, perpendicular to z, y and x
+    stereo,    ///< one pane per eye, or one pane for both eyes
+    overview,  ///< the camera's view, and maps from the top, the front and the right that show the camera's frustum
+    slices     ///< the camera's view, and three slices through the probe, perpendicular to z, y and x
 };
 inline constexpr Spelling<Arrangement> ARRANGEMENTS[] = {{Arrangement::single, "single"},
                                                          {Arrangement::stereo, "stereo"},
@@ -44,9 +44,9 @@ struct StereoSettings {
 };
 
 struct SliceSettings {
-    std::optional<double> black, white;  ///< intensities; default: the ends of the volume's range
-    double paint_share = 0.5;            ///< share of the group's colour in the colour of a painted voxel
-    double zoom = 1.0;                   ///< zoom of the slices; 1: the whole volume fits
+    std::optional<double> black, white;  ///< intensities; default: the limits of the volume's range
+    double paint_share = 0.5;            ///< share of the group's colour in a painted voxel's colour
+    double zoom = 1.0;                   ///< zoom of all slices; 1: the whole volume fits
     std::optional<glm::dvec3> center;    ///< voxel at their centre; default: the volume's centre, or the probe if
                                          ///< zoomed in
     bool operator==(const SliceSettings&) const = default;
@@ -57,19 +57,19 @@ struct ViewSettings {
     StereoSettings stereo;
     SliceSettings slices;
     double overview_zoom = 1.0;
-    bool volume = true;           ///< false: voxels are shown only in slices
-    bool meshes = true;           ///< a trace, surfaces and the probe's ball
-    bool cut_box = false;         ///< draws the edges of the box that the cutting planes keep
-    std::optional<uint8_t> solo;  ///< if set, draws only this group and its descendants; 0: only unpainted voxels
+    bool volume = true;           ///< whether voxels are shown outside of slices
+    bool meshes = true;           ///< the trace, surfaces and the probe's ball
+    bool cut_box = false;         ///< draws the edges of the box that remains after cutting
+    std::optional<uint8_t> solo;  ///< if set, only this group and its descendants are drawn; 0: only unpainted voxels
     bool operator==(const ViewSettings&) const = default;
 };
 
 /// The contents of a pane.
 struct Shot {
-    Shot(const Camera& seen_from) : camera(seen_from) {}  // implicit, because a camera alone is a complete shot
+    Shot(const Camera& seen_from) : camera(seen_from) {}  // implicit, because a camera alone makes a complete shot
     Camera camera;
-    std::optional<Camera> right_eye;  ///< for an anaglyph: `camera` gives red, `right_eye` green and blue
-    bool is_slice = false;            ///< draws voxels half-way between the camera's clip planes, unshaded and in grey
+    std::optional<Camera> right_eye;  ///< for anaglyphs: `camera` gives red, `right_eye` gives green and blue
+    bool is_slice = false;            ///< draws only the plane half-way between the clip planes, unshaded, in grey
     bool operator==(const Shot&) const = default;
 };
 
@@ -77,32 +77,32 @@ struct Pane {
     enum class Kind { main, left_eye, right_eye, map, slice };
     Kind kind = Kind::main;
     Shot shot;
-    PixelBox box;      ///< pixels of the picture that the pane covers
+    PixelBox box;      ///< the pixels of the picture that the pane covers
     std::string name;  ///< "top", "slice across z", ...
-    int axis = -1;     ///< the axis perpendicular to the slice; -1 for other panes
+    int axis = -1;     ///< the axis perpendicular to the slice; -1 for panes of other kinds
     glm::uvec2 pixels() const { return box.end - box.begin; }
 };
 
-/// Returns the panes of a picture; the first is the view of `main`. If the picture does not divide evenly, a row or
-/// column of pixels stays uncovered. `probe_voxel`: a point on all slices. A picture too small to divide has one pane.
+/// Returns the panes of a picture; the first is the view of `main`. If the division leaves a remainder, a row or column
+/// of pixels stays uncovered. `probe_voxel` is a point on all slices. A picture too small to divide has one pane.
 std::vector<Pane> panes_of(const ViewSettings& settings, const Camera& main, const glm::uvec2& pixels,
                            const VolumeInfo& volume, const glm::dvec3& probe_voxel);
 
-/// Zooms all slices by `factor` about the point at a pixel of one of them; that point stays fixed. Zooming out stops
-/// when the whole volume fits, which is then centred.
+/// Zooms all slices by `factor` about the point at a pixel of one slice, which stays at that pixel. Zooming out ends
+/// when the whole volume fits; the volume is then centred.
 SliceSettings slices_zoomed(const SliceSettings& slices, const Pane& slice, const glm::dvec2& pixel, double factor,
                             const VolumeInfo& volume, const glm::dvec3& probe_voxel);
-/// Moves slices so that the given one follows a mouse motion of `way` pixels.
+/// Moves the centre of all slices, so that `slice` follows a mouse motion of `way` pixels.
 SliceSettings slices_moved(const SliceSettings& slices, const Pane& slice, const glm::dvec2& way,
                            const VolumeInfo& volume, const glm::dvec3& probe_voxel);
-/// If the probe is outside the visible part of a slice along an axis, moves the slices along that axis. `held`: index
-/// of the pane under the mouse; its slice does not move as long as the probe is visible in it.
+/// Moves slices along each axis along which the probe has left a slice's visible part. `held` is the index of the pane
+/// under the mouse, whose slice does not move while the probe is visible in it.
 SliceSettings slices_following(const SliceSettings& slices, const std::vector<Pane>& panes, std::optional<size_t> held,
                                const VolumeInfo& volume, const glm::dvec3& probe_voxel);
 
-/// Returns the cameras of two eyes, left and right. With off-axis cameras, both eyes see a point at the target's depth
-/// at the same pixel, and there is no vertical parallax. With `toe_in`, and for orthographic cameras (without rotation
-/// they have no parallax), the eyes rotate about the target instead.
+/// Returns the cameras of the left and the right eye. With off-axis cameras, both eyes see a point at the target's
+/// depth at the same pixel, and there is no vertical parallax. With `toe_in`, and for orthographic cameras, the eyes
+/// rotate about the target instead (without rotation, orthographic cameras have no parallax).
 std::pair<Camera, Camera> eyes_of(const Camera& camera, const StereoSettings& settings);
 
 }  // namespace shvr

@@ -10,8 +10,8 @@ namespace shvr {
 
 namespace {
 
-/// Upper limit of extinction per reference length, used for opacity 1. With it, even the smallest part of the shortest
-/// step is opaque, yet differences of the extinction's integrals are still exact to 1e-8.
+/// Upper limit of extinction per reference length, which stands for opacity 1. Even the smallest part of the shortest
+/// step is opaque at this limit, yet differences between integrals of extinction are still exact to 1e-8.
 constexpr double OPAQUE = 1e6;
 constexpr uint32_t MAX_PARTS = 16;
 
@@ -20,24 +20,24 @@ double extinction_of(double opacity)
     return opacity >= 1.0 ? OPAQUE : std::min(-std::log1p(-opacity), OPAQUE);
 }
 
-/// Interpolates linearly; returns exactly `from` if `from` and `to` are equal.
+/// Interpolates linearly. Returns exactly `from` if `from` and `to` are equal.
 double between(double from, double to, double share)
 {
     return std::min(from + (to - from) * share, 1.0);
 }
 
-/// Mean of -ln(1 - o) over opacities o that change linearly from `from` to `to`.
+/// Returns the mean of -ln(1 - o) for opacities o that change linearly from `from` to `to`.
 double mean_extinction(double from, double to)
 {
     const double a = 1.0 - from, b = 1.0 - to;
-    // For nearly equal opacities, the closed form cancels; Simpson's rule then errs by less than 1e-13 of the value.
+    // The closed form cancels for nearly equal opacities; there, Simpson's rule has a relative error below 1e-13.
     if (std::abs(a - b) <= 1e-3 * std::max(a, b))
         return (extinction_of(from) + 4.0 * extinction_of(0.5 * (from + to)) + extinction_of(to)) / 6.0;
     const auto integral = [](double u) { return u > 0.0 ? u - u * std::log(u) : 0.0; };
     return (integral(a) - integral(b)) / (a - b);
 }
 
-/// Integrals of extinction, and of extinction times colour, over density from the first entry to each entry.
+/// For each entry, the integrals of extinction, and of extinction times colour, over density up to that entry.
 struct Integrals {
     std::vector<double> density, extinction;
     std::vector<glm::dvec3> light;
@@ -65,7 +65,7 @@ Integrals integrals_of(const TransferFunction& function, const Samples& samples)
             const double s0 = extinction_of(o0), middle = extinction_of(0.5 * (o0 + o1)), s1 = extinction_of(o1);
             const double sum = s0 + 4.0 * middle + s1;
             const double own = is_opaque ? 0.0 : (end - x) * mean_extinction(o0, o1);
-            // Colours change little in such a short part, so Simpson's rule weights them.
+            // Mixes the colours at this part's centre of extinction, which Simpson's rule finds accurately enough.
             const double back = sum > 0.0 ? (2.0 * middle + s1) / sum : 0.5;
             extinction += own;
             light += own * glm::mix(p.color, q.color, glm::mix(from, to, back));
@@ -77,7 +77,7 @@ Integrals integrals_of(const TransferFunction& function, const Samples& samples)
             x = end;
         }
     }
-    sums.extinction.resize(side, extinction);  // entries missing due to rounding, or if the function has zero width
+    sums.extinction.resize(side, extinction);  // entries that are missing due to rounding or zero width
     sums.light.resize(side, light);
     return sums;
 }
@@ -107,7 +107,7 @@ glm::dvec4 step_between(const Integrals& sums, double step, uint32_t front, uint
         light += through * opacity * color;
         through *= 1.0 - opacity;
     }
-    // The opacity of a part is not computed by subtraction from 1, because small opacities would cancel.
+    // Small opacities would cancel in 1 - through, so the opacity is computed from the optical depth.
     return glm::dvec4(light, -std::expm1(-depth_between(sums, step, front, back)));
 }
 
@@ -145,7 +145,7 @@ std::vector<uint32_t> visible_intervals_of_steps(std::span<const glm::vec4> tabl
                                                  std::span<const OpaqueInterval> opaque)
 {
     const uint32_t side = samples.entries;
-    size_t next = 0;  // the first opaque interval that does not end before this sample
+    size_t next = 0;  // the first opaque interval that ends at or after this sample
     const auto opacity = [&](uint32_t front, uint32_t back) { return table[size_t(back) * side + front].a; };
     std::vector<uint32_t> visible_before(side, 0);
     for (uint32_t k = 1; k < side; ++k) {

@@ -1,5 +1,5 @@
 #pragma once
-// Settings of a picture, except camera, transfer function and groups, as plain values. Pure functions; any thread.
+// Settings of a picture, except camera, transfer function and groups. Plain values and pure functions; any thread.
 
 #include <cstdint>
 #include <optional>
@@ -12,19 +12,19 @@
 
 namespace shvr {
 
-/// The largest OcclusionSettings::radius. The bricks gathered around a brick limit it (engine/passes/occlusion.h).
+/// Maximum of OcclusionSettings::radius: occlusion gathers only nearby bricks (engine/passes/occlusion.h).
 inline constexpr double MAX_OCCLUSION_RADIUS = 60.0;
 
-/// A point of the curve from arriving to visible light: linear between points, constant beyond the outermost points.
+/// A point of the curve from arriving to visible light. The curve is linear between points and constant outside.
 struct OcclusionPoint {
     double arrives = 0.0, seen = 0.0;  ///< shares
     bool operator==(const OcclusionPoint&) const = default;
 };
 inline constexpr size_t MAX_OCCLUSION_POINTS = 16;
 
-/// Settings of ambient occlusion: how much of the ambient light reaches a point (shaders/occlusion/occlusion.h).
+/// Ambient occlusion: how much of the ambient light reaches a point (shaders/occlusion/occlusion.h).
 struct OcclusionSettings {
-    double strength = 0.0;                  ///< 0: off; 1: fully blocked places get no ambient light
+    double strength = 0.0;                  ///< 0: off; 1: fully enclosed places get no ambient light
     double radius = 16.0;                   ///< distance from which light arrives, in reference lengths
     uint32_t rays = 32;                     ///< per voxel
     bool full_sphere = false;               ///< also traces rays from behind surfaces
@@ -34,7 +34,7 @@ struct OcclusionSettings {
     bool operator==(const OcclusionSettings&) const = default;
 };
 
-/// The visible share of arriving light, at full strength.
+/// Returns the visible share of light of which the share `arrives` reaches a point, at full strength.
 double seen_of(const OcclusionSettings& settings, double arrives);
 
 struct Light {
@@ -51,9 +51,9 @@ struct Light {
     bool operator==(const Light&) const = default;
 };
 
-/// Distance colour blending (Rheingans and Ebert 2001): mixes in a colour with growing distance. Its share at depth d
-/// is clamp(size d^rate, 0, 1), with 0^0 = 1; d is 0 where the drawn box of the volume begins along the view and 1
-/// where it ends. Size 0: off. Transparency is unchanged.
+/// Distance colour blending (Rheingans and Ebert 2001): mixes in a colour with growing distance. At depth d, its share
+/// is clamp(size d^rate, 0, 1), with 0^0 = 1. d is 0 where the drawn box of the volume begins along the view, and 1
+/// where it ends. Size 0 turns blending off. Transparency does not change.
 struct DistanceBlend {
     double size = 0.0;
     double rate = 1.0;
@@ -69,7 +69,7 @@ constexpr std::span<const Spelling<Sampling>> spellings_of(Sampling)
     return SAMPLINGS;
 }
 
-/// Whether bricks are paged on the device. Automatic: if the volume has several levels, or the budget requires it.
+/// Whether bricks are paged on the device. Automatic: if the volume has several levels, or exceeds the memory budget.
 enum class Paging { automatic, always, never };
 inline constexpr Spelling<Paging> PAGINGS[] = {
     {Paging::automatic, "automatic"}, {Paging::always, "always"}, {Paging::never, "never"}};
@@ -87,26 +87,26 @@ struct Unpainted {
 
 struct RenderSettings {
     glm::uvec2 size{512, 512};                  ///< pixels
-    double step_voxels = 0.5;                   ///< reference lengths (voxels along the finest axis)
-    double opacity_limit = 1.0 - 1.0 / 1024;    ///< a ray stops once its opacity reaches this
+    double step_voxels = 0.5;                   ///< in reference lengths (voxels along the finest axis)
+    double opacity_limit = 1.0 - 1.0 / 1024;    ///< a ray ends once its opacity reaches this value
     glm::dvec4 background{1.0, 1.0, 1.0, 1.0};  ///< linear light, straight alpha
     Sampling sampling = Sampling::automatic;
     Paging paging = Paging::automatic;
-    double detail = 1.0;  ///< minimum voxels per pixel, if the volume has several levels; 0: always the finest level
+    double detail = 1.0;  ///< minimum voxels per pixel in volumes with several levels; 0: always the finest level
     bool skip_empty_space = true;
-    bool preintegration = false;  ///< classifies steps by both of their ends (preintegration.h); for steps of at most 1
-    /// Integrates light between voxel borders and points of the transfer function, instead of sampling at steps
-    /// (shaders/rays/integral.comp). Requires steps of at most 1 and exact sampling; overrides preintegration.
+    bool preintegration = false;  ///< looks up steps by both end values (preintegration.h); for steps of at most 1
+    /// Integrates light exactly, between voxel borders and points of the transfer function, instead of sampling it in
+    /// steps (shaders/rays/integral.comp). Requires steps of at most 1 and exact sampling. Overrides preintegration.
     bool exact_integral = false;
-    /// Smooth borders of painted groups: between voxels, a sample takes the label with the largest weight among its
-    /// eight neighbouring voxels, not the nearest voxel's label. Slices and occlusion use the nearest voxel.
+    /// Smooths the borders of painted groups: a sample takes the label with the largest total weight among its eight
+    /// neighbouring voxels instead of the nearest voxel's label. Slices and occlusion still use the nearest voxel.
     bool smooth_borders = false;
-    double saturation = 1.0;  ///< saturation of everything drawn, except lines over it; 0: greys of the same luminance
+    double saturation = 1.0;  ///< saturation of everything except lines over the picture; 0: greys of equal luminance
     bool classifies_steps() const { return preintegration && !exact_integral; }
     bool operator==(const RenderSettings&) const = default;
 };
 
-/// The six cutting planes: the part of the volume that is drawn, in voxels.
+/// The part of the volume that six cutting planes leave, in voxels.
 struct CutBox {
     glm::dvec3 lower{0.0};
     glm::dvec3 upper{double(MAX_SIDE)};

@@ -7,7 +7,7 @@ namespace shvr {
 
 namespace {
 
-/// Calls `take` with x, y and coverage for each pixel of the stamp within the rows.
+/// Calls `take` with x, y and coverage for each pixel of a stamp that lies inside both `pane` and `rows`.
 template <class Take>
 void for_each_covered(const Stamp& stamp, const PixelBox& pane, const PixelBox& rows, Take take)
 {

@@ -1,6 +1,6 @@
 #pragma once
-// Single-colour shapes over a picture: text rasterized by the caller, and its background. Complements the lines of
-// overlay.h. Pure; any thread.
+// Shapes of a single colour over a picture: text rasterized by the caller, and its background. They complement the
+// lines of overlay.h. Pure functions; any thread.
 
 #include <cstdint>
 #include <span>
@@ -12,16 +12,16 @@
 namespace shvr {
 
 struct Stamp {
-    glm::ivec2 begin{0};            ///< its upper left pixel, in its pane; may lie outside
+    glm::ivec2 begin{0};            ///< pixel of the pane for the upper left corner; may be outside
     glm::ivec2 pixels{0};           ///< width and height
-    std::vector<uint8_t> coverage;  ///< rows from the top; 255: the pixel takes the colour
+    std::vector<uint8_t> coverage;  ///< row by row from the top; 255: fully the stamp's colour
     glm::dvec3 color{1.0};          ///< linear light
 };
 
-/// Draws stamps in order over premultiplied light. Stamps lie relative to `pane`, a box of pixels of the picture, and
-/// are clipped to it. `image` holds some or all of the picture's rows, starting at `first_row`.
+/// Draws stamps, in order, over premultiplied light. Their positions are relative to `pane`, a box of pixels of the
+/// picture, to which they are clipped. `image` holds some or all rows of the picture, from `first_row` on.
 void draw_stamps(ImageF& image, std::span<const Stamp> stamps, const PixelBox& pane, uint32_t first_row = 0);
-/// Draws stamps over a screen's opaque pixels, in the same way.
+/// Likewise, but over a screen's opaque pixels.
 void draw_stamps(Image8& image, std::span<const Stamp> stamps, const PixelBox& pane);
 
 }  // namespace shvr

@@ -26,7 +26,7 @@ SurfaceForest::SurfaceForest(std::vector<KeyedSurface> surfaces, const VolumeInf
     std::ranges::sort(places_, {}, &Place::key);
 }
 
-/// Removes a surface from the large hierarchy: the last surface of its leaf moves to the free place.
+/// Removes a surface from the large hierarchy. The last surface of the same leaf moves to its place in the list.
 void SurfaceForest::remove(uint64_t key)
 {
     const auto found = std::ranges::lower_bound(places_, key, {}, &Place::key);
@@ -93,7 +93,7 @@ bool is_placed_alike(const gpu::Surface& a, const gpu::Surface& b)
 bool SurfaceForest::restyle(std::span<const KeyedSurface> surfaces, const VolumeInfo& volume)
 {
     if (!may_grow()) return false;
-    // The keys of both hierarchies are sorted, and so are the surfaces: one loop walks through all three.
+    // `places_`, `added` and `surfaces` are all sorted by key, so one loop can walk through them in parallel.
     std::vector<std::pair<uint32_t, gpu::Surface>> other;
     std::vector<KeyedSurface> added = added_;
     size_t place = 0, of_added = 0;

@@ -1,7 +1,7 @@
 #pragma once
-// The surfaces of a scene, with cheap changes of a few at a time: a large hierarchy of boxes that only loses surfaces,
+// The surfaces of a scene, with cheap changes of a few at a time. A large hierarchy of boxes only loses surfaces; it is
 // followed by a small hierarchy of the surfaces added since, which is rebuilt on each change. A search continues from
-// the large hierarchy into the small one, so kernels see a single hierarchy. Plain data; one thread at a time.
+// the large one into the small one, so kernels see a single hierarchy. Plain data; one thread at a time.
 
 #include <cstdint>
 #include <span>
@@ -14,38 +14,38 @@ namespace shvr {
 
 class SurfaceForest {
 public:
-    /// Maximum number of surfaces in the small hierarchy, which takes two milliseconds to build.
+    /// Maximum number of surfaces in the small hierarchy, which then takes two milliseconds to build.
     static constexpr size_t MAX_SURFACES_ADDED = 2048;
 
     SurfaceForest() = default;
-    /// Keys must differ. Fails under the same conditions as `surface_tree`. `max_in_leaf` is for tests.
+    /// Keys must be unique. Fails under the same conditions as `surface_tree`. `max_in_leaf` is only set by tests.
     SurfaceForest(std::vector<KeyedSurface> surfaces, const VolumeInfo& volume,
                   size_t max_in_leaf = gpu::SURFACES_IN_LEAF);
 
-    /// Removes the surfaces with `keys`, if present, and adds `surfaces`. Returns false, and changes nothing, if
-    /// building a new forest is as cheap. Fails like `surface_tree`, and then changes nothing. Memory and time are
+    /// Removes the surfaces with `keys`, as far as present, and adds `surfaces`. Returns false, without a change, if
+    /// building a new forest is as cheap. Fails like `surface_tree`, also without a change. Memory and time are
     /// proportional to the changes and MAX_SURFACES_ADDED, not to the size of the forest.
     bool replace(std::span<const uint64_t> keys, std::span<const KeyedSurface> surfaces, const VolumeInfo& volume);
 
-    /// Changes the looks of existing surfaces; `surfaces`, sorted by key, must be all of them. Returns false, and
-    /// changes nothing, if the keys differ or if building a new forest is as cheap. Fails like `surface_tree`, and then
-    /// changes nothing. Writes only surfaces that look different, and boxes whose size changed.
+    /// Changes the looks of existing surfaces; `surfaces`, sorted by key, must contain all of them. Returns false,
+    /// without a change, if the keys differ or if building a new forest is as cheap. Fails like `surface_tree`, also
+    /// without a change. Writes only the surfaces that look different, and the boxes whose size changes.
     bool restyle(std::span<const KeyedSurface> surfaces, const VolumeInfo& volume);
 
     const std::vector<gpu::SurfaceNode>& nodes() const { return nodes_; }
     const std::vector<gpu::Surface>& list() const { return list_; }
-    /// Upper bound of the number of nodes, after any `replace`.
+    /// Returns an upper bound for the number of nodes after any number of calls of `replace`.
     size_t max_nodes() const { return base_nodes_ + (may_grow() ? 2 * MAX_SURFACES_ADDED : 0); }
     size_t max_surfaces() const { return base_list_ + (may_grow() ? MAX_SURFACES_ADDED : 0); }
 
-    /// Indices into `nodes` and `list` that were written since the last `take_written`; may contain duplicates.
+    /// Indices into `nodes` and `list` of the elements written since the last `take_written`; may contain duplicates.
     struct Written {
         std::vector<uint32_t> nodes, list;
     };
     Written take_written() { return std::exchange(written_, {}); }
 
 private:
-    /// Whether the forest is large enough to be changed; a smaller forest is rebuilt as fast as the small hierarchy.
+    /// Whether the forest is large enough to be changed; a smaller one is rebuilt as fast as the small hierarchy.
     bool may_grow() const { return base_list_ > 2 * MAX_SURFACES_ADDED; }
     void remove(uint64_t key);
     void set_added(const SurfaceTree& tree);
@@ -53,10 +53,10 @@ private:
     size_t max_in_leaf_ = gpu::SURFACES_IN_LEAF;
     std::vector<gpu::SurfaceNode> nodes_;
     std::vector<gpu::Surface> list_;
-    size_t base_nodes_ = 0, base_list_ = 0;  ///< sizes of the large hierarchy, which precedes the small one
-    std::vector<uint64_t> keys_;             ///< keys of the surfaces of the large hierarchy, in the order of `list_`
-    std::vector<uint32_t> leaves_;           ///< leaf node of each surface in `keys_`
-    /// Sorted keys of the large hierarchy, each with its index in `list_`; GONE: removed.
+    size_t base_nodes_ = 0, base_list_ = 0;  ///< sizes of the large hierarchy's part, which comes first
+    std::vector<uint64_t> keys_;             ///< keys of the large hierarchy's surfaces, in the order of `list_`
+    std::vector<uint32_t> leaves_;           ///< for each surface in `keys_`, its leaf's index in `nodes_`
+    /// A key of the large hierarchy, and its index in `list_` (GONE: removed). `places_` is sorted by key.
     struct Place {
         uint64_t key;
         uint32_t at;

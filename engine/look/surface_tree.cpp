@@ -15,7 +15,7 @@ namespace shvr {
 namespace {
 
 constexpr double NEAREST = -double(MAX_SIDE), FARTHEST = 2.0 * double(MAX_SIDE), MAX_RADIUS = double(MAX_SIDE);
-/// A rod is drawn as its larger ball if that ball contains the other, within this share of the radii's difference.
+/// Tolerance, as a share of the radii's difference, for drawing a rod as a ball if one of its balls contains the other.
 constexpr double CONTAINED = 1e-5;
 
 struct Box {
@@ -44,8 +44,8 @@ std::string name_of(uint64_t key)
     return KINDS[key >> 32] + std::to_string(uint32_t(key));
 }
 
-/// The device's tie-breaking number of a surface, which includes its kind. Some numbers above 2^30 coincide; this
-/// affects only ties.
+/// Returns the number by which the device breaks ties between surfaces, kind first. Numbers from 2^30 on may coincide,
+/// which affects only ties.
 uint32_t order_of(uint64_t key)
 {
     return uint32_t(key >> 32) << 30 | (uint32_t(key) & 0x3fffffffu);
@@ -111,14 +111,14 @@ struct Item {
     uint32_t surface = 0;
 };
 
-/// Splits by the surface area heuristic (MacDonald and Booth 1990) over bins (Wald 2007).
+/// Splits by the surface area heuristic (MacDonald and Booth 1990), evaluated over bins (Wald 2007).
 class Builder {
 public:
     Builder(std::vector<Item>& items, size_t max_in_leaf, std::vector<gpu::SurfaceNode>& nodes)
         : items_(items), max_in_leaf_(max_in_leaf), nodes_(nodes)
     {}
 
-    /// Adds items begin ... end. Every split leaves at least a sixteenth on each side, which bounds the depth.
+    /// Adds items begin ... end. Both sides of a split get at least a sixteenth of the items, which bounds the depth.
     void add(size_t begin, size_t end)
     {
         Box box;
@@ -258,7 +258,7 @@ std::vector<uint32_t> refit(std::span<gpu::SurfaceNode> nodes, std::span<const g
             lower = rounded(box.lower, -INFINITY);
             upper = rounded(box.upper, INFINITY);
         }
-        // A leaf that has lost its surfaces keeps its box.
+        // A leaf whose surfaces were all removed keeps its box.
         if (lower.x > upper.x || (lower == parent.lower && upper == parent.upper)) continue;
         parent.lower = lower;
         parent.upper = upper;

@@ -1,6 +1,6 @@
 #pragma once
-// Opaque surfaces of a scene, as a user specifies them and as the device searches them: a hierarchy of boxes in
-// depth-first order, with a skip link in each box. Plain data; any thread.
+// The opaque surfaces of a scene, as users specify them and as the device searches them: a hierarchy of boxes in
+// depth-first order, in which each box has a skip link. Plain data; any thread.
 
 #include <cstdint>
 #include <span>
@@ -13,7 +13,7 @@
 
 namespace shvr {
 
-/// A ball, if `from` equals `to`, or a rod: the convex hull of two balls.
+/// A ball (`from` equals `to`), or a rod, the convex hull of two balls.
 struct SurfaceLook {
     glm::dvec3 from{0.0}, to{0.0};              ///< volume space, physical units
     double radius_from = 1.0, radius_to = 1.0;  ///< physical units, above 0
@@ -21,8 +21,8 @@ struct SurfaceLook {
     bool operator==(const SurfaceLook&) const = default;
 };
 
-/// The owner of a surface. Sort order: a session's surfaces by index, then nodes and internodes of the trace by number.
-/// If two surfaces are equally far along a ray, the surface that sorts first is visible.
+/// The owner of a surface. Surfaces are sorted by kind, in this order, then by the session's index or the trace's
+/// number. If two surfaces are equally far along a ray, the surface that sorts first is visible.
 enum class SurfaceKind : uint8_t { session, node, internode };
 constexpr uint64_t surface_key(SurfaceKind kind, uint32_t number)
 {
@@ -37,7 +37,7 @@ struct KeyedSurface {
 /// Uses each surface's index as its key.
 std::vector<KeyedSurface> keyed(std::span<const SurfaceLook> surfaces);
 
-/// A surface takes 60 bytes, and its nodes at most 60 more. So buffers fit any device: the smallest limit is 128 MiB.
+/// A surface takes 60 bytes, and its nodes at most 60 more, so buffers stay below Vulkan's smallest limit, 128 MiB.
 inline constexpr size_t MAX_SURFACES = 1'000'000;
 
 struct SurfaceTree {
@@ -46,12 +46,12 @@ struct SurfaceTree {
     std::vector<uint64_t> keys;      ///< keys of `list`
 };
 
-/// Fails if there are more than MAX_SURFACES surfaces, or if one is not finite, has no size, or is farther than 2^20
-/// reference lengths from any place the volume may be; the message names it. `max_in_leaf` is for tests.
+/// Fails, naming the surface, if one is not finite, has no size, or is more than 2^20 reference lengths away from any
+/// place the volume may be, or if there are more than MAX_SURFACES surfaces. `max_in_leaf` is only set by tests.
 SurfaceTree surface_tree(std::span<const KeyedSurface> surfaces, const VolumeInfo& volume,
                          size_t max_in_leaf = gpu::SURFACES_IN_LEAF);
 
-/// Encodes one surface as in the tree's list. Fails under the same conditions as `surface_tree`.
+/// Encodes one surface like the elements of `list`. Fails under the same conditions as `surface_tree`.
 gpu::Surface surface_on_device(const KeyedSurface& surface, const VolumeInfo& volume);
 
 /// Fits the boxes of `nodes`, one or more whole trees, to the surfaces in their leaves. Returns the changed nodes.

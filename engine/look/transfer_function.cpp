@@ -71,8 +71,8 @@ double depth_of_step(double opacity, double step_voxels)
 
 double Samples::at(uint32_t entry) const
 {
-    // Multiplies before dividing, and sets the last entry explicitly, so that entries at whole intensities are
-    // exact.
+    // Entries at whole intensities must be exact, so this multiplies before it divides, and returns `upper` itself for
+    // the last entry.
     return entry + 1 == entries ? upper : lower + (upper - lower) * entry / (entries - 1);
 }
 
@@ -117,7 +117,7 @@ std::vector<uint32_t> visible_intervals(const TransferFunction& function, const 
 {
     std::vector<uint32_t> visible_before(samples.entries, 0);
     const std::span<const ControlPoint> points = function.points();
-    size_t line = 0;  // the first interval between two points that does not end before the sample
+    size_t line = 0;  // the first interval between two points that ends at or after the sample
     for (uint32_t k = 1; k < samples.entries; ++k) {
         const double lower = samples.at(k - 1), upper = samples.at(k);
         while (line + 2 < points.size() && points[line + 1].intensity < lower) ++line;
