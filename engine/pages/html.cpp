@@ -8,7 +8,7 @@ namespace shvr::report {
 
 namespace {
 
-/// Style that all pages share, in light and in dark.
+/// The CSS that all pages share, for light and dark mode.
 constexpr const char* COMMON_STYLE = R"(:root{color-scheme:light dark;--paper:#fff;--ink:#222;--faint:#5a5f66;
 --line:#d8dadd;--field:#eef0f2;--good:#14632b;--bad:#a3161b;--perhaps:#8a5a00;--link:#0b57a4}
 @media (prefers-color-scheme:dark){:root{--paper:#17191c;--ink:#dcdfe3;--faint:#9aa1a9;--line:#3a3f45;--field:#262a2f;
