@@ -41,7 +41,7 @@ void Workbench::perform(const Action& action)
     for (const std::string& line : desk_.logged_instead) desk_.log(line);
 }
 
-/// Calls the service that the action's row names.
+/// Passes the action to the service named in the action's row.
 void Workbench::carry_out(const Action& action)
 {
     action.visit([&]<class Kind>(const Kind& each) {

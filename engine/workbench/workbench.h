@@ -28,29 +28,29 @@ public:
 
     // ---- Actions
 
-    /// Carries out an action. If it fails, nothing has changed, and the caller reports the reason.
+    /// Carries out an action. If it fails, nothing has changed; the caller should report the reason.
     void perform(const Action& action);
-    /// Carries out an action; a failure other than DeviceLost becomes a message. Returns whether it succeeded.
+    /// Carries out an action. A failure other than DeviceLost becomes a message. Returns whether the action succeeded.
     bool apply(const Action& action);
-    /// Opens a file in the background, as the action Open does, with settings as --set takes them. The open document is
-    /// saved first, and stays until the next one is loaded. A failure becomes a message.
+    /// Opens a file in the background, as the action Open does, with settings as --set takes them. Saves the open
+    /// document first, which stays open until the new one is loaded. A failure becomes a message.
     void begin_open(const std::filesystem::path& path, const std::vector<std::string>& settings)
     {
         services_.opener.begin_open(path, settings);
     }
-    /// Opens a file and waits until it is open; does not save the open document first. Fails if it cannot be opened.
+    /// Opens a file and waits until it is open, without saving the open document first. Fails if that is not possible.
     void open(const std::filesystem::path& path, const std::vector<std::string>& settings, Work::Opening how = {})
     {
         services_.opener.open(path, settings, std::move(how));
     }
-    /// Takes a document that the caller has opened; the renderer's scene shows the document's volume.
+    /// Opens a document that the caller has read, and whose volume the renderer's scene already has.
     void take(Document::Read read) { services_.opener.take(std::move(read)); }
     void say(std::string text, Weight weight = Weight::done) { desk_.say(std::move(text), weight); }
-    /// Call after the graphics device was lost (DeviceLost, from any function here): drops the workbench's objects on
-    /// that device, calls `make_anew`, and displays everything again. Recorded work survives; the part of a running
-    /// stroke that is not painted yet is lost.
+    /// Call this after any function here threw DeviceLost: drops the workbench's objects on the lost device, calls
+    /// `make_anew`, and displays everything again. Recorded work survives; the part of a running stroke that is not
+    /// painted yet is lost.
     void restart_device(const std::function<void()>& make_anew) { services_.opener.restart_device(make_anew); }
-    /// From now on this device moves the probe, whatever is plugged in, and its button paints.
+    /// Makes this device move the probe, whatever other devices are connected; its first button paints.
     void use_device(std::shared_ptr<HapticDevice> device, const std::string& name)
     {
         services_.hand.use_device(std::move(device), name);
@@ -60,46 +60,46 @@ public:
 
     // ---- Steps of the main loop
 
-    /// Sets the size of the picture; 0, 0: no picture is drawn.
+    /// Sets the size of the picture in pixels; 0, 0: no picture is drawn.
     void set_pixels(const glm::uvec2& pixels);
-    /// Sets the mouse position, at which values are read; null: the mouse is not over the picture.
+    /// Sets the position of the mouse, for reading values there; null: the mouse is not over the picture.
     void set_pointer(const std::optional<Pointer>& pointer) { services_.viewer.set_pointer(pointer); }
-    /// Returns the text copied since the last call, for the clipboard; empty: none.
+    /// Returns the text to put on the clipboard, and clears it; empty: nothing was copied since the last call.
     std::string take_clipboard() { return services_.reader.take_clipboard(); }
-    /// Sets whether the hand is changing a setting: until it stops, no history step is made, so one drag is one step.
+    /// Sets whether the user holds a control. Meanwhile, changes of settings make no history step: a drag is one step.
     void set_hand_down(bool is_down) { services_.settings.set_hand_down(is_down); }
-    /// Sets the pixels per unit of the interface, for drawing over pictures.
+    /// Sets the number of pixels per unit of the interface, which lines and labels over pictures need.
     void set_units(double units) { services_.photographer.set_units(units); }
-    /// Sets whether the device is idle; while it is idle, large screenshots may continue.
+    /// Sets whether the device is idle. Large screenshots make progress only while it is.
     void set_still(bool is_still) { services_.photographer.set_still(is_still); }
-    /// Runs one step of all background work. A failure becomes a message, and the failed part is retried a little
-    /// later; the other parts continue, and no work is lost. Throws DeviceLost.
+    /// Runs one step of all background work. If a part fails, the failure becomes a message, and the part is retried a
+    /// little later; other parts continue, and no work is lost. Throws DeviceLost.
     void advance();
-    /// Runs steps until the current stroke is painted. Returns why part of it was not painted; empty if all of it was.
+    /// Runs steps until the current stroke is fully painted. Returns why part of it was not painted; empty: all was.
     std::string finish_stroke() { return services_.painter.finish_stroke(); }
-    /// Waits for the save under way. Returns the written parts; fails with the reason if one could not be written. If
-    /// `progress` throws, the save is cancelled.
+    /// Waits for the save in progress. Returns the parts that were written. Fails with the reason if a part could not
+    /// be written. An exception from `progress` cancels the save.
     Work::Saved finish_save(const Progress& progress = {}) { return services_.saver.finish_save(progress); }
-    /// The save under way, if any, ends at its next step; files that are not complete by then stay as they were.
+    /// Stops the save in progress, if any, at its next step. Files that are not complete by then keep their content.
     void cancel_save() { services_.saver.cancel_save(); }
-    /// Waits for the operation on groups under way; fails with the reason if it did not become a step. If `progress`
-    /// throws, the operation is cancelled.
+    /// Waits for the operation on groups in progress. Fails with the reason if its result did not become a step. An
+    /// exception from `progress` cancels the operation.
     const OperationResult& finish_operation(const Progress& progress = {}) { return services_.groups.finish(progress); }
-    /// Waits until all changes are in the journal on disk; fails with the reason if that is not possible.
+    /// Waits until the journal on disk has all changes. Fails with the reason if they cannot be written.
     void flush() { desk_.document->annotator.work().flush(); }
-    /// Returns whether another step would find work at once.
+    /// Returns whether another call of advance() would have work to do at once.
     bool has_work() const;
-    /// Returns whether the journal lacks changes of the view, the probe or the like.
+    /// Returns whether the journal on disk lacks changes of the view, the probe or similar settings.
     bool has_view_to_keep() const { return services_.settings.has_view_to_keep(); }
-    /// Returns whether a picture exists that does not yet show the last changes.
+    /// Returns whether a picture exists that does not show the last changes yet.
     bool is_stirring() const { return services_.viewer.is_stirring(); }
-    /// Returns whether the open document may be closed: call it once a frame. Saves all work as Save does; if the user
-    /// only looked around, saves the view silently. Does not save read-only work; a message has already told the user
-    /// so. While the user has not yet decided which files to believe, annotation stays as in the journal.
+    /// Returns whether the open document may be closed; call this once a frame. Saves all work as Save does; if only
+    /// the view changed, saves it without a message. Read-only work is not saved, as a message has told the user
+    /// before. While the user has not decided which files to believe, the annotation is left in the journal.
     using Leave = ui::Leave;
     Leave leave(std::string& why) { return services_.saver.leave(why); }
     bool is_saving() const { return services_.saver.is_saving(); }
-    /// Cancels what would delay closing: opening, imports, exports, labelling, comparing. Saves continue.
+    /// Cancels jobs that would delay closing: opening, imports, exports, labelling, comparing. Saves continue.
     void cancel_tasks() { services_.tasks.cancel_all(); }
     /// Returns whether any job is displayed.
     bool shows_jobs() const;
@@ -116,14 +116,14 @@ public:
     void wait_for_screenshots() const { services_.photographer.wait(); }
     /// Returns whether Quit was requested, and clears the request.
     bool take_quit() { return services_.saver.take_quit(); }
-    /// Returns the requested keyboard focus and clears it; empty: none.
+    /// Returns the part of the window that should get the keyboard focus, and clears the request; empty: no request.
     std::string take_focus() { return services_.window.take_focus(); }
-    /// Returns the page that the browser is to show, and clears the request; empty: none.
+    /// Returns the page that the browser should open, and clears the request; empty: no request.
     std::filesystem::path take_page() { return services_.window.take_page(); }
-    /// Returns whether the box of the cutting planes is shown: while they are moved, and a little longer.
+    /// Returns whether to show the box of the cutting planes: while they are moved and for a short time afterwards.
     bool shows_cut_box() const { return services_.viewer.shows_cut_box(); }
     bool shows_full_screen() const { return services_.window.is_full_screen(); }
-    /// Number of voxels in the preview when the last stroke began, if it had one.
+    /// Returns how many voxels the preview showed when the last stroke began; null if no preview was shown.
     std::optional<int64_t> previewed_at_stroke() const { return services_.painter.previewed_at_stroke(); }
     /// Time when the open document was opened, and the number of documents opened so far.
     double opened_s() const { return desk_.opened_s; }

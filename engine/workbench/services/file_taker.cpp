@@ -37,8 +37,8 @@ bool is_opened(FileContent content)
            content == FileContent::picture;
 }
 
-/// Returns whether a transfer function's points are relative to the tissue of any volume, as in preset files, and not
-/// intensities.
+/// Returns whether the points of a transfer function are relative to a volume's tissue, as in preset files, instead of
+/// being intensities.
 bool is_preset(const std::string& text, const std::filesystem::path& path)
 {
     const JsonDocument json(text, path.string());
@@ -68,7 +68,7 @@ void FileTaker::act(const Open& action)
     others_.begin_open(action.path, lines_of(action.settings), {}, action.settings.empty());
 }
 
-/// Opens a copy: the shipped example must stay unchanged, since its folder may be read-only and others open it, too.
+/// Opens the user's copy of the example. The shipped example must stay unchanged: other users open it, too.
 void FileTaker::act(const OpenExample&)
 {
     if (options_.settings.empty())
@@ -85,7 +85,7 @@ void FileTaker::act(const OpenExample&)
     });
 }
 
-// ---- What a file is, before it is opened ----------------------------------------------------------------------------
+// ---- Inspection of files before they are opened ---------------------------------------------------------------------
 
 void FileTaker::act(const LookAtFile& action)
 {
@@ -123,7 +123,7 @@ void FileTaker::act(const LookAtFile& action)
     });
 }
 
-// ---- What is dropped onto the window --------------------------------------------------------------------------------
+// ---- Files dropped onto the window ----------------------------------------------------------------------------------
 
 void FileTaker::act(const TakeFile& action)
 {
@@ -145,7 +145,7 @@ void FileTaker::act(const TakeFile& action)
     const std::filesystem::path open = document_ ? document_->session.volume_path : std::filesystem::path();
     jobs_.start("looking at " + short_name(action.path), [this, path = action.path, volume, open](ProgressReporter&) {
         WhatItIs found = what_is(path, volume ? &*volume : nullptr);
-        // The open scan cannot be annotation of itself.
+        // The file of the open scan cannot also be annotation of that scan.
         std::error_code ignored;
         if (found.may_be_annotation && std::filesystem::equivalent(path, open, ignored))
             found = {.content = FileContent::volume};
@@ -172,8 +172,8 @@ void FileTaker::ask_what_it_is(UnclearFile file)
     unclear_ = std::move(file);
 }
 
-/// Prevents annotation that is dropped together with a scan from being added to the scan that is still open. A volume
-/// as large as the open scan counts as a scan if a mask is dropped with it; without a mask, the user is asked.
+/// Takes several files. Annotation that is dropped with a scan must not be added to the scan that is still open. A
+/// volume of the open scan's size counts as a scan if a mask is dropped with it; if not, the user is asked.
 void FileTaker::take_together(std::vector<std::filesystem::path> paths)
 {
     std::optional<VolumeInfo> volume;
@@ -210,17 +210,17 @@ void FileTaker::take(FileContent content, const std::filesystem::path& path)
     take_as(use_of(content), path);
 }
 
-// ---- What is loaded into the open document --------------------------------------------------------------------------
+// ---- Annotation and transfer functions loaded into the open document ------------------------------------------------
 
-/// A file that was read on the worker.
+/// Data of a file that was read on the worker thread.
 struct FileTaker::ReadFile {
     std::filesystem::path path;
-    uint64_t opening = 0;        ///< the document that it was read for (Desk::openings)
+    uint64_t opening = 0;        ///< number of the document for which the file was read (Desk::openings)
     std::optional<Part> part{};  ///< null: a transfer function
     std::string text{};          ///< contents of a transfer function
     std::shared_ptr<const shvr::Document> found{};
     LoadNotes notes{};
-    Groups groups{}, looks{};  ///< groups of the document, and with names and colours that a mask adds
+    Groups groups{}, looks{};  ///< the document's groups, and these with the names and colours that a mask adds
 
     FileUse use() const
     {
@@ -231,7 +231,7 @@ struct FileTaker::ReadFile {
     }
 };
 
-/// Never closes the open scan, whatever the file contains, since the user asked for annotation.
+/// Never opens a document in place of the open scan, whatever the file contains, since the user asked for annotation.
 void FileTaker::act(const LoadAnnotation& action)
 {
     unclear_.reset();
@@ -313,7 +313,7 @@ void FileTaker::go_on_with(std::shared_ptr<const ReadFile> read, Step step)
     load(*read);
 }
 
-/// Returns the changes of annotation that loading makes, without those of the groups' looks.
+/// Returns the changes of annotation that loading the file makes, without names and colours of groups.
 std::vector<Change> FileTaker::changes_by(const ReadFile& read) const
 {
     return changes_between(*read.part, document_->annotator.document(), *read.found);
@@ -351,8 +351,8 @@ void FileTaker::load_transfer_function(const ReadFile& read)
     say("The transfer function of " + read.path.string() + " is taken; undo takes it back");
 }
 
-/// What was read becomes one step of the history, together with the names and colours of groups that a mask states and
-/// the session lacks.
+/// Makes one history step of the data that was read. For a mask, the step includes names and colours of groups that the
+/// mask file states and the session lacks.
 void FileTaker::load(const ReadFile& read)
 {
     if (!read.part) return load_transfer_function(read);

@@ -1,5 +1,5 @@
 #pragma once
-// Opens, describes or takes files, including files dropped onto the window. The contents of a file decide its kind.
+// Opens, describes or takes files, including files dropped onto the window. Decides by content which kind a file is.
 
 #include "engine/tasks/file_content.h"
 #include "engine/workbench/desk/service.h"
@@ -13,7 +13,7 @@ public:
         Call<void(const std::filesystem::path&)> allow_outside;
         Call<void(const std::filesystem::path& path, const std::vector<std::string>& settings,
                   std::vector<std::filesystem::path> taken_into_it, bool asks)>
-            begin_open;  ///< `asks`: asks first if the file looks like a label image and another is open
+            begin_open;  ///< `asks`: asks first if it looks like a label image and a scan is open
         Call<void(Session)> take_session;
         Call<void(const Set&)> set;
         Call<void()> record_settings;
@@ -27,7 +27,7 @@ public:
     void act(const LoadAnnotation& action);
     void act(const PreviewLoad& action);
     void act(const DismissUnclearFile& action);
-    /// Shows the question what a file is; fails in a script, which cannot be asked.
+    /// Asks the user which kind of file it is. Fails in a script, where no user can answer.
     void ask_what_it_is(UnclearFile file);
 
     CandidateModel model() const

@@ -10,9 +10,9 @@ namespace shvr::ui {
 
 namespace {
 
-constexpr double MAX_PUCK_STEP_S = 0.1;    ///< limits motion in one step: a hung frame must not move the view far
-constexpr double TAPS_PER_SECOND = 5.0;    ///< rate at which a held button repeats, as for keys
-constexpr double MAX_BUTTON_STEP_S = 0.5;  ///< limits repetition in one step: a hung frame must not move the view far
+constexpr double MAX_PUCK_STEP_S = 0.1;    ///< limits motion per step, so that a hung frame does not move the view far
+constexpr double TAPS_PER_SECOND = 5.0;    ///< rate at which a held button repeats its action, as held keys do
+constexpr double MAX_BUTTON_STEP_S = 0.5;  ///< limits repetition per step, so that a hung frame causes no burst of it
 
 std::filesystem::path free_trace_path(const std::filesystem::path& stem)
 {
@@ -51,7 +51,7 @@ TouchSettings Hand::touch_settings() const
         .camera = document.camera,
         .view_height = pixel_size(document.camera, {1, 1}, glm::distance(document.camera.eye, document.camera.target)),
         .scale = document.session.interaction.workspace_scale,
-        // Forces are off while the volume moves with the stylus, since the felt voxels would lag behind the volume.
+        // The felt voxels lag behind a volume that moves with the stylus, so forces are off during such a motion.
         .lets_go = hand_.is_let_go || grab_.has_value(),
         .source = document.source,
         .offsets = &document.annotator.document().density,
@@ -113,7 +113,7 @@ void Hand::follow_grab()
     others_.look_from(camera_of_grab(*grab_, device.position_m, device.rotation, units_per_m));
 }
 
-/// Moves the view as the puck reports. If there is no report, the puck is at rest: the back end reports no speed then.
+/// Moves the view at the speed that the puck reports. A puck that reports nothing is at rest: its speed is then 0.
 void Hand::follow_puck()
 {
     const double now = options_.now_s();
@@ -123,7 +123,7 @@ void Hand::follow_puck()
     for (const Action& move : moves_of_puck(puck->device, seconds)) apply(move);
 }
 
-/// Treats a stylus's buttons as keys without modifiers: Stylus1 is the first button.
+/// Treats the buttons of a stylus as keys without modifiers; "Stylus1" is the name of the first button.
 void Hand::follow_buttons(uint32_t buttons)
 {
     const double now = options_.now_s(), elapsed = std::min(now - std::exchange(buttons_at_s_, now), MAX_BUTTON_STEP_S);
@@ -204,7 +204,7 @@ void Hand::act(const FollowStylus& action)
         });
 }
 
-/// Acts as a hand would: while the first button is down, paints or, with the trace tool, adds nodes.
+/// Moves the probe along the points; while the first button is down, paints or, with the trace tool, adds nodes.
 void Hand::follow_points(const std::vector<StylusPoint>& points, double node_every)
 {
     constexpr double APART_VOXELS = 0.5;

@@ -1,5 +1,5 @@
 #pragma once
-// The haptic device in use, the effects of its motion and buttons, and recordings of its motion.
+// Uses a haptic device: moves the probe, the view and the volume with it, follows its buttons, and records its motion.
 
 #include <set>
 
@@ -17,7 +17,7 @@ public:
         Call<void(const glm::dvec3& point, bool jumps)> move_probe;
         Call<void(const PaintOp&)> paint;
         Call<void(const TraceOp&)> trace;
-        Call<std::filesystem::path()> stem;  ///< base of the names of files next to the session
+        Call<std::filesystem::path()> stem;  ///< returns the start of the names of files next to the session
     };
     Hand(Desk& desk, PreferenceKeeper& keeper, Others others);
     void act(const LetGo& action);
@@ -30,7 +30,7 @@ public:
     void act(const FollowStylus& action);
 
     void advance() override;
-    /// Makes this device move the probe, whatever else is plugged in; the device's button paints.
+    /// Makes this device move the probe, whatever other devices are connected; its first button paints.
     void use_device(std::shared_ptr<HapticDevice> device, const std::string& name);
     TouchedModel model() const;
 
@@ -54,7 +54,7 @@ private:
     std::unique_ptr<DeviceWatch> watch_;    ///< null: no search for devices
     std::shared_ptr<HapticDevice> device_;  ///< null: none is open
     HandView hand_;
-    std::set<std::string> refused_;  ///< ids of devices that failed to open; an id is removed when requested again
+    std::set<std::string> refused_;  ///< ids of devices that failed to open and that the user has not requested again
     bool is_given_device_ = false;   ///< the caller supplied the device
     double look_again_s_ = 0.0, puck_at_s_ = 0.0;
     std::optional<Grab> grab_;

@@ -52,7 +52,7 @@ void Hand::leave_device()
     hand_ = std::move(hand);
 }
 
-/// Returns the device that the user chose, or the first usable one; null: there is none, or the mouse was chosen.
+/// Returns the device that the user chose, or else the first usable one; null if there is none.
 const DeviceListing* Hand::wanted_device() const
 {
     const ChosenDevice& chosen = keeper_.preferences().device;
@@ -83,7 +83,7 @@ void Hand::choose_device()
     watch_->open(wanted->id);
 }
 
-/// Opens devices that are plugged in while the program runs, and stops using those that are unplugged.
+/// Opens devices that are connected while the program runs, and closes those that are disconnected.
 void Hand::follow_devices()
 {
     if (!options_.has_servo || options_.is_script) return;
@@ -148,7 +148,7 @@ void Hand::act(const FindDevices&)
     say("Looking for haptic devices");
 }
 
-/// Reopens the device: back ends calibrate when they open. If the user's hand is needed, a message says what to do.
+/// Reopens the device, which makes it calibrate. If the user must do something for this, a message says what.
 void Hand::act(const CalibrateDevice&)
 {
     if (!device_) fail("no haptic device is in use; expected one to calibrate");

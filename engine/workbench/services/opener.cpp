@@ -21,8 +21,8 @@ bool is_one_journal(const std::filesystem::path& a, const std::filesystem::path&
     return std::filesystem::absolute(a).lexically_normal() == std::filesystem::absolute(b).lexically_normal();
 }
 
-/// Returns the path to open for a picture: the picture's project, or its bare volume. Empty if the file is not a
-/// picture, or is a picture of a bare volume of raw voxels, which only the session describes.
+/// Returns the path to open for a picture: its project or its bare volume. Empty if the file is no picture, or if the
+/// picture shows raw voxels without a project, whose layout only the picture's session states.
 std::filesystem::path opened_for_picture(const std::filesystem::path& path, const OpenedSession& opened)
 {
     std::error_code ignored;
@@ -32,8 +32,8 @@ std::filesystem::path opened_for_picture(const std::filesystem::path& path, cons
     return has_file ? opened.session.volume_path : std::filesystem::path();
 }
 
-/// Returns the session saved next to a volume if the session belongs to this very file, so that reopening the scan uses
-/// the session. Empty: there is no such session.
+/// Returns the session saved next to a volume, so that opening the scan continues that session. Empty if no session is
+/// there, or if it belongs to another file.
 std::filesystem::path session_saved_for(const std::filesystem::path& volume)
 {
     std::error_code ignored;
@@ -104,7 +104,7 @@ struct Opener::ReadResult {
     std::string looks_like_labels{};
 };
 
-/// Starts reading on the worker; called again if the open document changed its journal after the last read began.
+/// Starts reading on the worker; called again if the open document's journal, which was read too, changed since.
 void Opener::read_next()
 {
     Opening& opening = *opening_;
@@ -175,13 +175,13 @@ void Opener::advance()
         }
         if (opening_->scene && opening_->scene->load_on(SLICE_S)) finish();
     } catch (const DeviceLost&) {
-        throw;  // the opening continues once a device is available
+        throw;  // keeps the opening, which continues once a device is available
     } catch (...) {
         end(std::current_exception());
     }
 }
 
-/// Asks, and ends the opening, if the file looks like annotation of the open document. Returns whether it asks.
+/// If the file looks like annotation of the open document, ends the opening, asks the user, and returns true.
 bool Opener::asks_what_it_is()
 {
     if (!document_ || !opening_->asks || opening_->looks_like_labels.empty()) return false;
@@ -194,7 +194,7 @@ bool Opener::asks_what_it_is()
     return true;
 }
 
-/// Returns whether the open document is saved, and its journal is unchanged since it was read.
+/// Returns whether the open document is saved and, if its journal was read, the journal has not changed since.
 bool Opener::is_ready_to_load()
 {
     if (!document_) return true;
@@ -257,7 +257,7 @@ void Opener::finish()
         others_.load_annotation(LoadAnnotation{.path = taken});
 }
 
-/// Shows the previous document again, which was unloaded to make room.
+/// Shows the previous document again, after it was unloaded to make room for another one.
 void Opener::show_again()
 {
     try {
@@ -272,7 +272,7 @@ void Opener::show_again()
     say(document_->session_path.string() + " is open again");
 }
 
-/// Resets the state of the services that belongs to the previous document.
+/// Resets all state of services that belongs to the previous document.
 void Opener::begin_document(const Opening& opening)
 {
     desk_.opened_s = opening.begun_s;
@@ -289,7 +289,7 @@ void Opener::take(Document::Read read)
     ++desk_.openings;
 }
 
-/// Reports the opening, and differences from the last save; the differences are shown until dismissed.
+/// Reports what was opened, and how it differs from the last save; the differences stay on display until dismissed.
 void Opener::welcome(const std::filesystem::path& path, const std::vector<std::string>& losses,
                      const std::vector<std::string>& removed)
 {
@@ -310,7 +310,7 @@ void Opener::welcome(const std::filesystem::path& path, const std::vector<std::s
     say(status, is_as_left ? Weight::done : Weight::warning);
 }
 
-/// Applies a picture's look and view as settings, which can be undone.
+/// Applies the look of a picture as settings, which can be undone, and the picture's view.
 void Opener::show_picture(const Session& pictured)
 {
     Session wanted = pictured;

@@ -45,28 +45,28 @@ public:
 
     void advance() override;
     bool advances_without_document() const override { return true; }
-    /// Starts opening with settings in the form of --set. `taken_into_it`: annotation dropped together with the path.
-    /// `asks`: if the file looks like a label image while another document is open, the user is asked instead.
+    /// Starts opening a path, with settings as --set takes them. `taken_into_it`: annotation that was dropped with the
+    /// path. `asks`: if the file looks like a label image and a document is open, asks the user instead of opening.
     void begin_open(const std::filesystem::path& path, const std::vector<std::string>& settings,
                     std::vector<std::filesystem::path> taken_into_it = {}, bool asks = false);
-    /// Allows the session at this path to write outside its folder whenever it is opened in this process.
+    /// Permits the session at this path to write outside its folder, until the program ends.
     void allow_outside(const std::filesystem::path& path) { allowed_outside_.insert(path); }
-    /// Opens a path and waits until it is open; saves nothing first. Fails if it cannot be opened.
+    /// Opens a path and waits until it is open; does not save the open document first. Fails if it cannot be opened.
     void open(const std::filesystem::path& path, const std::vector<std::string>& settings, Work::Opening how);
-    /// Takes a document that the caller has read; the renderer's scene already has its volume.
+    /// Opens a document that the caller has read, and whose volume the renderer's scene already has.
     void take(Document::Read read);
     bool is_opening() const { return opening_ != nullptr; }
     /// Returns the name of the file being opened; empty: none.
     std::string_view opening_name() const;
     void cancel();
-    /// Cancels the opening if its number is `number`. Returns whether it has that number.
+    /// Cancels the opening if its job number is `number`. Returns whether that was the case.
     bool cancel(Jobs::Number number);
-    /// Handles the end of the reading job. Returns whether `job` is that job.
+    /// Handles a finished job if it is the reading job of the opening. Returns whether it is.
     bool end_reading(const Jobs::Finished& job);
-    /// Adds the opening's state while it loads or reloads a document, and while its ended job is missing from `states`.
+    /// add_loading: adds an opening that loads onto the device. add_read: adds an opening whose reading job just ended.
     void add_loading(std::vector<Jobs::State>& states) const;
     void add_read(std::vector<Jobs::State>& states) const;
-    /// Unloads the open document, for a device that has room for only one document.
+    /// Unloads the open document, to make room on the device for another one.
     void put_away();
     /// Loads the unloaded document onto the device again.
     void bring_back();
@@ -96,8 +96,8 @@ private:
     const Others others_;
     std::shared_ptr<Opening> opening_;                     ///< null: nothing is being opened
     std::shared_ptr<std::exception_ptr> awaited_failure_;  ///< failure of the opening for which `open` waits
-    Jobs::Number next_return_ = Jobs::Number{1} << 48;     ///< counts in a range distinct from the jobs' numbers
-    std::unique_ptr<Document> away_;  ///< the open document without a scene, while the device has room for only one
+    Jobs::Number next_return_ = Jobs::Number{1} << 48;     ///< distinguishes reloads; starts above all job numbers
+    std::unique_ptr<Document> away_;  ///< the open document while the device has no room for it next to another one
     std::set<std::filesystem::path> allowed_outside_;
     std::vector<std::string> recovered_;
     std::string looks_like_labels_;  ///< see OpeningModel

@@ -19,7 +19,7 @@ void Opener::add_loading(std::vector<Jobs::State>& states) const
 
 void Opener::add_read(std::vector<Jobs::State>& states) const
 {
-    // The reading job has ended, but its result has not been taken yet.
+    // Adds an opening whose reading job has ended but whose result has not been used yet.
     if (opening_ && std::ranges::find(states, opening_->number, &Jobs::State::number) == states.end())
         states.push_back(state_of(*opening_));
 }
@@ -44,7 +44,7 @@ OpeningModel Opener::model() const
             .looks_like_labels = document_ ? std::string_view(looks_like_labels_) : std::string_view()};
 }
 
-// ---- Where it does not come to its end ------------------------------------------------------------------------------
+// ---- Cancellation and failure ---------------------------------------------------------------------------------------
 
 bool Opener::end_reading(const Jobs::Finished& job)
 {
@@ -132,7 +132,7 @@ void Opener::bring_back()
     }
 }
 
-// ---- Where the graphics device is lost ------------------------------------------------------------------------------
+// ---- Loss of the graphics device ------------------------------------------------------------------------------------
 
 void Opener::restart_device(const std::function<void()>& make_anew)
 {
@@ -146,7 +146,7 @@ void Opener::restart_device(const std::function<void()>& make_anew)
         document_->screen.drop();
     }
     if (opening_) opening_->scene.reset();   // it is loaded again from its beginning
-    if (document_) others_.forget_reload();  // the document was just loaded with its present settings
+    if (document_) others_.forget_reload();  // load_again() applies the current settings anyway
     make_anew();
     others_.look_again();
     if (document_) load_again();
@@ -157,7 +157,7 @@ void Opener::restart_device(const std::function<void()>& make_anew)
         Weight::warning);
 }
 
-/// Unloads the document, to be restored later, if the new device cannot hold it.
+/// Loads the document onto the new device. If the device cannot hold it, unloads it, to be shown again later.
 void Opener::load_again()
 {
     try {

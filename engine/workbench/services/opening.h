@@ -1,5 +1,5 @@
 #pragma once
-// State of an opening under way; only for the opener's own source files.
+// State of one opening. Include this header only in the opener's own source files.
 
 #include "engine/workbench/services/opener.h"
 
@@ -16,11 +16,11 @@ struct Opener::Opening {
     bool comes_back = false;                             ///< restores the unloaded document
     std::vector<std::filesystem::path> taken_into_it{};  ///< annotation dropped together with it
 
-    Jobs::Number number = 0;                       ///< the reading job's; the opening keeps it after the job ends
+    Jobs::Number number = 0;                       ///< number of the reading job, which the opening keeps afterwards
     std::shared_ptr<Document::Read> read{};        ///< null: still being read
     std::shared_ptr<std::exception_ptr> thrown{};  ///< exception from the job
-    uint64_t journal_bytes = 0;  ///< size of the open document's journal when reading began; used if `read` has it
-    std::optional<Session> pictured{};  ///< look of a picture, if the opened file is one
+    uint64_t journal_bytes = 0;  ///< size of the open document's journal when reading began
+    std::optional<Session> pictured{};  ///< if the opened file is a picture: its look
     std::string looks_like_labels{};    ///< as in OpeningModel
     std::unique_ptr<Scene> scene{};     ///< scene being loaded
 };

@@ -12,10 +12,10 @@ namespace shvr::ui {
 
 namespace {
 
-/// Maximum wait for the bricks that a stroke needs.
+/// Time without a new brick after which a stroke that waits for bricks is abandoned.
 constexpr double PATIENCE_S = 20.0;
 
-/// Returns whether a stroke found hardly any voxels to paint within the brush's reach.
+/// Returns whether a stroke found almost no voxels to paint, compared with the volume within the brush's radius.
 bool is_hardly_any(const StrokeResult& result, const glm::dvec3& spacing)
 {
     constexpr double HARDLY = 0.05;
@@ -112,8 +112,8 @@ void Painter::advance_stroke()
     if (has_painted || before != stroke_uploads_) stroke_progress_s_ = options_.now_s();
 }
 
-/// Waits, before annotation is changed, until strokes that have ended are painted. The wait takes milliseconds unless
-/// bricks come from a slow disk; an action that is still impossible afterwards fails with its reason.
+/// Waits until strokes that have ended are fully painted, before other changes of annotation. The wait takes
+/// milliseconds unless bricks come from a slow disk. It ends after 2 s at most; the change then fails, and states why.
 void Painter::await_strokes()
 {
     constexpr double MAX_WAIT_S = 2.0;
@@ -147,7 +147,7 @@ std::string Painter::finish_stroke()
     return unpainted;
 }
 
-/// Returns false while memory is insufficient. Stores the reason of any other failure in `unpainted`.
+/// Advances the stroke. Returns false while memory is insufficient. Stores why anything else failed in `unpainted`.
 bool Painter::tries_stroke(std::string& unpainted)
 {
     try {
@@ -178,7 +178,7 @@ void Painter::stroke_ended()
     say(said, is_as_meant && !found_nothing ? Weight::done : Weight::warning);
 }
 
-/// If the voxel under the probe is below the paint threshold, states its value and the key that sets the threshold.
+/// If the voxel under the probe is below the paint threshold, returns its value and the key that sets the threshold.
 std::string Painter::how_to_reach_this() const
 {
     const Model now = desk_.model();
@@ -188,7 +188,7 @@ std::string Painter::how_to_reach_this() const
            keeper_.with_key(", and ", "threshold_here", " sets the threshold from it");
 }
 
-/// Requests the preview while it is shown and no stroke is running; a running stroke shows its effect itself.
+/// Updates the preview of the brush. A running stroke needs no preview, since it shows its effect itself.
 void Painter::follow_preview()
 {
     Document& document = *document_;
@@ -201,7 +201,7 @@ void Painter::follow_preview()
         const bool is_of_budget = dynamic_cast<const gpu::BudgetError*>(&error) != nullptr;
         if (dynamic_cast<const gpu::DeviceLost*>(&error) != nullptr) throw;
         if (dynamic_cast<const gpu::MemoryError*>(&error) != nullptr && !is_of_budget) throw;  // there may be some soon
-        // Other possible errors: the brush is too large, or a file cannot be read.
+        // The brush is too large for a preview, or a file cannot be read: switches the preview off.
         document.session.probe.preview = false;
         others_.note_edit();
         document.previewer.want(std::nullopt);

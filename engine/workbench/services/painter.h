@@ -1,5 +1,5 @@
 #pragma once
-// Strokes (their beginning, end, and motion with the probe), the preview of the brush, and the state of the journal.
+// Carries out strokes and their preview, and reports the state of the journal.
 
 #include "engine/workbench/desk/preference_keeper.h"
 #include "engine/workbench/desk/service.h"
@@ -24,19 +24,19 @@ public:
     void advance() override;
     /// Forgets state of the previous document.
     void begin_document() { journal_failure_.clear(); }
-    /// Extends the open stroke to the probe's position.
+    /// Extends a stroke that is in progress to the probe's position.
     void extend_stroke();
-    /// Runs steps until the current stroke is painted. Returns why a part was not painted; empty if all was.
+    /// Runs steps until the current stroke is fully painted. Returns why part of it was not painted; empty: all was.
     std::string finish_stroke();
-    /// Waits until strokes that the hand has ended are painted.
+    /// Waits, for a limited time, until strokes that have ended are fully painted.
     void await_strokes();
-    /// Restarts the time limit for the arrival of the stroke's bricks.
+    /// Restarts the time limit after which a stroke that waits for bricks is abandoned.
     void note_progress() { stroke_progress_s_ = options_.now_s(); }
-    /// Returns whether no brick has arrived for so long that the stroke is abandoned.
+    /// Returns whether a stroke that waits for bricks has got none for so long that it should be abandoned.
     bool is_stuck() const;
     /// Returns the message about an abandoned stroke.
     static std::string why_stuck();
-    /// Number of voxels that the preview showed when the last stroke began; null if there was no preview.
+    /// Returns how many voxels the preview showed when the last stroke began; null if no preview was shown.
     std::optional<int64_t> previewed_at_stroke() const { return previewed_at_stroke_; }
     PaintModel model() const;
 

@@ -39,7 +39,7 @@ void Photographer::follow_screenshots()
 std::filesystem::path Photographer::stem() const
 {
     const std::filesystem::path stem = std::filesystem::path(document_->session_path).replace_extension();
-    // The example's session is in a hidden folder, which is unsuitable for pictures.
+    // The example's session lies in a hidden folder, where the user would not look for pictures.
     const bool is_example = stem.parent_path() == options_.settings / "example";
     const char* const home = std::getenv("HOME");
     return is_example && home && *home ? std::filesystem::path(home) / stem.filename() : stem;
@@ -64,7 +64,7 @@ void Photographer::add_loading(std::vector<Jobs::State>& states) const
 void Photographer::act(const Screenshot& action)
 {
     if (!action.is_large) {
-        document_->painted_at.reset();  // a picture can be redrawn from its session, which lacks `painted_at`
+        document_->painted_at.reset();  // the probe's ball must be in the picture, as in one drawn from the session
         screenshots_.take();
         return say("The screenshot will be taken when the picture is sharp");
     }
@@ -79,7 +79,7 @@ void Photographer::act(const Screenshot& action)
                  " pixels is made in the background"));
 }
 
-/// Returns the marks for a picture `scale` times as large as the window; empty if no marks are wanted.
+/// Returns the marks to draw over a picture `scale` times as large as the window; empty if the user wants no marks.
 Figure Photographer::figure_of_picture(uint32_t scale) const
 {
     const Document& document = *document_;
@@ -89,7 +89,7 @@ Figure Photographer::figure_of_picture(uint32_t scale) const
     return figure_of(model(), panes, units_ * scale, options_.draw_texts);
 }
 
-/// Makes the texts stored in a picture. Their session states the size; a picture larger than the window has no probe.
+/// Makes the texts stored in a picture, such as its session. `shows_probe`: false for pictures larger than the window.
 Screenshots::Texts Photographer::texts_of_picture(const glm::uvec2& pixels, bool shows_probe) const
 {
     return [this, pixels, shows_probe](const std::filesystem::path& picture) {

@@ -1,5 +1,5 @@
 #pragma once
-// Screenshots of the view: as shown, or larger and rendered in the background.
+// Takes screenshots: of the view as shown, or larger ones, which are rendered in the background.
 
 #include "engine/workbench/desk/service.h"
 #include "engine/workbench/document/screenshots.h"
@@ -19,17 +19,17 @@ public:
     bool has_large() const { return screenshots_.has_large(); }
     bool is_writing() const { return screenshots_.is_writing(); }
     void wait() const { screenshots_.wait(); }
-    /// Cancels the large screenshot, if there is one, and reports `by` as the cause.
+    /// Cancels the large screenshot in progress, if any, and reports `by` as the cause.
     void drop_large(const char* by);
-    /// Cancels the large screenshot, and reports so, if its job number is `number`. Returns whether it has that number.
+    /// Cancels the large screenshot in progress if its job number is `number`. Returns whether that was the case.
     bool cancel(Jobs::Number number);
-    /// Adds the state of the large screenshot, if there is one.
+    /// Adds the state of the large screenshot in progress, if any.
     void add_loading(std::vector<Jobs::State>& states) const;
-    /// Returns the base of names for files next to the session: "scan" for scan-view-1.png.
+    /// Returns the start of the names of files next to the session, such as "scan" in scan-view-1.png.
     std::filesystem::path stem() const;
     /// Sets the number of pixels per unit of the interface, for drawing over pictures.
     void set_units(double units) { units_ = units; }
-    /// Sets whether the device is idle; large screenshots continue only then.
+    /// Sets whether the device is idle. Large screenshots make progress only while it is.
     void set_still(bool is_still) { is_still_ = is_still; }
 
 private:

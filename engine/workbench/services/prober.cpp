@@ -14,7 +14,7 @@ double depth_of(const Camera& camera, const glm::dvec3& point)
     return glm::dot(point - camera.eye, axes_of(camera).forward);
 }
 
-/// Returns the point under a pixel at the depth of the probe, or just in front of the eye if the probe is behind it.
+/// Returns the point under a pixel, at the probe's depth; if the probe is behind the eye, just in front of the eye.
 glm::dvec3 in_plane_of(const glm::dvec3& probe, const Pane& seen, const glm::dvec2& pixel)
 {
     const Camera& camera = seen.shot.camera;
@@ -26,7 +26,7 @@ glm::dvec3 in_plane_of(const glm::dvec3& probe, const Pane& seen, const glm::dve
 
 Prober::Prober(Desk& desk, Others others) : Service(desk), others_(std::move(others)) {}
 
-/// Interrupts an open stroke, so that nothing is painted between the probe and the hand's next position.
+/// Interrupts a stroke in progress, so that nothing is painted between the probe and its next position.
 void Prober::lift()
 {
     if (document_->annotator.stroke_is_open()) document_->annotator.lift_stroke();
@@ -89,7 +89,7 @@ void Prober::act(const PlaceProbe& action)
     move_probe(action.voxel * document_->volume().spacing, true);
 }
 
-/// Moves the probe, and extends an open stroke to the new position.
+/// Moves the probe. A stroke in progress extends to the new position.
 void Prober::move_probe(const glm::dvec3& point, bool jumps)
 {
     if (jumps)

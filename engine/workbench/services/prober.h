@@ -24,7 +24,7 @@ public:
     void act(const PlaceProbe& action);
     void act(const ScaleProbe& action);
 
-    /// Moves the probe, and extends an open stroke to the new position.
+    /// Moves the probe. A stroke in progress extends to the new position.
     void move_probe(const glm::dvec3& point, bool jumps);
     ProbeModel model() const;
 

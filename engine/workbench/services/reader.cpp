@@ -17,7 +17,7 @@ void Reader::advance()
     for (const std::string& message : renderer_.scene().take_messages()) say(message, Weight::warning);
 }
 
-/// Returns the position of the probe; over a slice, of the pointer.
+/// Returns the position of the pointer if it is over a slice; otherwise, the position of the probe.
 glm::dvec3 Reader::voxel_to_read() const
 {
     const Document& document = *document_;
@@ -32,8 +32,8 @@ glm::dvec3 Reader::voxel_to_read() const
            document.volume().spacing;
 }
 
-/// Reads the intensity of the voxel if it is another voxel than before, and requests the relevant share of the probe's
-/// ball. If reading a file takes long, voxels are read less often: reading takes at most a tenth of the time.
+/// Reads the intensity at the probe or pointer if its voxel changed, and requests the relevant share of the probe's
+/// ball. If reading from a file takes long, reads less often, so that reading takes at most a tenth of the time.
 void Reader::follow_reading()
 {
     Document& document = *document_;
@@ -60,7 +60,7 @@ void Reader::follow_reading()
     reading_.relevant_share = document.meter.share();
 }
 
-/// Returns whether the share can be measured: not while the device paints, nor for a probe above the brush's maximum.
+/// Returns whether to measure the probe's share: its label is on, no stroke runs, and a brush may have its radius.
 bool Reader::probe_is_measured() const
 {
     const Document& document = *document_;
@@ -91,7 +91,7 @@ void Reader::read_at(const glm::dvec3& voxel)
         reading_.intensity =
             densities_in(*document.source, work.density, {at, at + int64_t{1}}).values[0] - reading_.offset;
     } catch (const Error&) {
-        // An unreadable voxel has no value here; drawing the voxel reports the error.
+        // A voxel that cannot be read has no value here. Drawing the voxel reports the error.
     }
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Values under the probe and the pointer, measurements, and reports of the scene.
+// Reads the values under the probe and the pointer, keeps measurements, and reports the scene's messages.
 
 #include "engine/workbench/desk/preference_keeper.h"
 #include "engine/workbench/desk/service.h"
@@ -21,9 +21,9 @@ public:
     void act(const CopyMeasurements& action);
 
     void advance() override;
-    /// Discards the last read voxel, since another document is open.
+    /// Discards the value that was read last, since it belongs to the previous document.
     void begin_document() { read_voxel_.reset(); }
-    /// Returns the text that was set for copying since the last call; empty: none.
+    /// Returns the text to copy to the clipboard, and clears it; empty: no text was set since the last call.
     std::string take_clipboard() { return std::exchange(clipboard_, {}); }
     ReadingModel model() const;
 
@@ -36,9 +36,9 @@ private:
     PreferenceKeeper& keeper_;
     const Others others_;
     Reading reading_;
-    std::optional<glm::dvec3> read_voxel_;  ///< integer coordinates of the voxel whose intensity is in `reading_`
+    std::optional<glm::dvec3> read_voxel_;  ///< voxel, in whole coordinates, whose intensity `reading_` states
     uint64_t read_revision_ = 0;            ///< revision of the paint
-    double read_again_s_ = 0.0;             ///< earliest time of the next read; limits the share of time spent reading
+    double read_again_s_ = 0.0;             ///< earliest time of the next read, which limits the time spent reading
     std::string clipboard_;
     Attempt reading_turn_;
 };

@@ -19,7 +19,7 @@ Reloader::Reloader(Desk& desk, Others others) : Service(desk), others_(std::move
 
 Reloader::~Reloader() = default;
 
-/// Starts a reload, or reports at once that the volume cannot be loaded with the session's settings.
+/// Requests a reload with the session's settings. Fails if the volume is too large for them.
 void Reloader::want(const RenderSettings& before)
 {
     if (others_.is_opening()) fail(others_.opening_name(), " is being opened; expected that to have ended");
@@ -96,7 +96,7 @@ void Reloader::add_loading(std::vector<Jobs::State>& states) const
                       .fraction = reload_->scene ? reload_->scene->loaded() : -1.0});
 }
 
-/// Drops pending requests to the scene that is about to be replaced.
+/// Drops pending requests to the scene, which is about to be replaced.
 void Reloader::drop_queries()
 {
     document_->previewer.drop();

@@ -1,7 +1,7 @@
 #pragma once
-// Reloads the volume after changes of render.sampling or render.paging. The new scene is loaded in slices; the
-// displayed scene stays in use until the new one is complete. If the device has no room for both, the document is
-// unloaded while the new scene loads, as for opening.
+// Reloads the volume after changes of render.sampling or render.paging. The new scene is loaded in slices, while the
+// old scene stays on display. If the device has no room for both scenes, the document is unloaded until the new scene
+// is loaded, as when another document is opened.
 
 #include "engine/workbench/desk/service.h"
 
@@ -13,7 +13,7 @@ public:
     struct Others {
         Call<bool()> is_opening;
         Call<std::string_view()> opening_name;
-        Call<void()> load_alone;  ///< unloads the document and loads it again
+        Call<void()> load_alone;  ///< unloads the document, then loads it again
         Call<void(const char* by)> drop_screenshot;
         Call<void()> note_edit;
         Call<void()> look_again;
@@ -23,14 +23,14 @@ public:
 
     void advance() override;
     bool advances_without_document() const override { return true; }
-    /// Starts a reload. Reports at once if the session's settings cannot be loaded. `before`: the previous settings.
+    /// Requests a reload. Fails if the volume is too large for the session's settings. `before`: the previous settings.
     void want(const RenderSettings& before);
     bool is_wanted() const { return reload_ != nullptr; }
     /// Cancels the reload. Returns whether there was one.
     bool cancel();
-    /// Cancels the reload, and reports so, if its job number is `number`. Returns whether it has that number.
+    /// Cancels the reload if its job number is `number`. Returns whether that was the case.
     bool cancel(Jobs::Number number);
-    /// Drops the reload, since another operation has already loaded the volume with the current settings.
+    /// Forgets the requested reload, since another operation loads the volume with the current settings anyway.
     void forget() { reload_.reset(); }
     /// Adds the state of the reload, if there is one.
     void add_loading(std::vector<Jobs::State>& states) const;
@@ -41,7 +41,7 @@ private:
     void drop_queries();
 
     const Others others_;
-    std::shared_ptr<Reload> reload_;  ///< null: the displayed scene matches the settings
+    std::shared_ptr<Reload> reload_;  ///< null: the scene on display matches the settings
 };
 
 }  // namespace shvr::ui

@@ -36,7 +36,7 @@ void Saver::act(const SaveAs& action)
     save_to(action.path);
 }
 
-/// Requests a save. It begins once a stroke under way is ended and painted, so that it contains the whole stroke.
+/// Requests a save. If a stroke is in progress, ends it; the save begins once it is fully painted, and so contains it.
 void Saver::save_to(const std::filesystem::path& path)
 {
     Annotator& annotator = document_->annotator;
@@ -53,7 +53,7 @@ void Saver::follow_save()
     if (!wanted_save_ || save_) return;
     Annotator& annotator = document_->annotator;
     if (annotator.stroke_is_running()) {
-        renderer_.scene().advance();                              // takes the stroke's bricks even without a picture
+        renderer_.scene().advance();                              // receives the stroke's bricks even without a picture
         if (annotator.stroke_is_open()) others_.note_progress();  // a hand may rest
         if (!others_.is_stuck()) return;
         annotator.drop_strokes();
@@ -102,7 +102,7 @@ void Saver::act(const WorkOnCopy&)
     start_copy({}, true);
 }
 
-/// Starts copying the present state; changes made while the copy is written are not in it.
+/// Starts writing a copy of the current state. Later changes are not in the copy.
 void Saver::start_copy(const std::filesystem::path& path, bool opens_it)
 {
     if (!document_->only_looks()) others_.record_settings();
@@ -184,7 +184,7 @@ Leave Saver::leave(std::string& why)
         if (asks && !document_->has_settings_to_save()) return Leave::now;
         if (!asks && document_->is_saved() && !is_running) {
             if (!document_->has_view_to_keep() || std::exchange(has_tried_view_, true)) return Leave::now;
-            begin_save(false, Document::Parts::session);  // a failed save of the view alone deserves no error message
+            begin_save(false, Document::Parts::session);  // if only the view is unsaved, failing deserves no message
             return Leave::later;
         }
         if (asks)
@@ -233,7 +233,7 @@ void Saver::act(const Quit& action)
 
 // ---- The spacing ----------------------------------------------------------------------------------------------------
 
-/// Saves the new spacing in the session; reopening the session converts the positions in the journal.
+/// Saves the new spacing in the session, then opens the session again, which converts positions in the journal.
 void Saver::act(const CorrectSpacing& action)
 {
     if (is_saving()) fail("the work is being saved; expected that to have ended");

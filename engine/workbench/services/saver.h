@@ -1,5 +1,5 @@
 #pragma once
-// Saving, in place or elsewhere, and leaving. The data is copied at once; the files are written in the background.
+// Saves the document, in place or elsewhere, and before leaving. Copies its data at once; a worker writes the files.
 
 #include <set>
 
@@ -11,8 +11,8 @@ namespace shvr::ui {
 /// Result of asking whether the open document may be closed (Workbench::leave).
 enum class Leave {
     now,
-    later,    ///< a save is under way; the program stays usable until it ends
-    refused,  ///< the document cannot be saved; `why` is set the first time
+    later,    ///< a save is in progress; the program stays usable, and must ask again
+    refused,  ///< the document cannot be saved; `why` states the reason the first time
 };
 
 class Saver : public Service {
@@ -24,7 +24,7 @@ public:
         Call<std::string()> finish_stroke;
         Call<bool()> is_stuck;
         Call<void()> note_progress;
-        Call<bool()> is_writing;  ///< whether a file that the user requested is being written
+        Call<bool()> is_writing;  ///< returns whether a job is writing a file that the user requested
         Call<void()> record_settings;
         Call<void()> discard;
         Call<bool()> is_discarded;
@@ -44,13 +44,13 @@ public:
     void begin_document();
     bool is_saving() const { return save_ != nullptr || wanted_save_; }
     bool is_copying() const { return !copies_.empty(); }
-    /// Handles the end of a job of the worker that writes saves.
+    /// Handles a finished job of the worker thread that writes saves.
     void end(const Jobs::Finished& job);
     Leave leave(std::string& why);
-    /// Waits for the save under way. Returns the written parts; fails with the reason if a part could not be written.
-    /// If `progress` throws, the save is cancelled.
+    /// Waits for the save in progress. Returns the written parts. Fails with the reason if a part could not be written.
+    /// An exception from `progress` cancels the save.
     Work::Saved finish_save(const Progress& progress = {});
-    /// The save under way, if any, ends at its next step; files that are not complete by then stay as they were.
+    /// Stops the save in progress, if any, at its next step. Files that are not complete by then keep their content.
     void cancel_save();
     /// Returns whether Quit was requested, and clears the request.
     bool take_quit() { return std::exchange(quits_, false); }
@@ -75,13 +75,13 @@ private:
         bool is_asked_for = true;  ///< false: success is not reported
     };
     std::unique_ptr<Save> save_;
-    /// Save to start once the current stroke or save has ended. Empty path: in place; otherwise the new path.
+    /// The next save, which starts once the stroke or save in progress has ended. Empty path: saves in place.
     std::optional<std::filesystem::path> wanted_save_;
-    std::string unpainted_;          ///< why part of the stroke before the save was not painted
-    std::string save_failure_;       ///< why the last save failed; empty: it succeeded
+    std::string unpainted_;          ///< why part of the stroke before the save could not be painted
+    std::string save_failure_;       ///< why the last save failed; empty if it succeeded
     Work::Saved saved_;              ///< result of the last save
-    bool has_tried_view_ = false;    ///< saving only the view was tried; its failure does not prevent closing
-    bool is_leaving_ = false;        ///< leaving was requested; if the save fails, leaving is refused
+    bool has_tried_view_ = false;    ///< saving the view was tried; even if it failed, the document may be closed
+    bool is_leaving_ = false;        ///< the user wants to leave; if the save fails, leaving is refused
     std::set<Jobs::Number> copies_;  ///< copies that a saver is writing
     bool told_of_writers_ = false;
     bool reopens_when_saved_ = false;  ///< with the session's new spacing

@@ -12,7 +12,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// Returns whether pictures of the volume stay the same: settings drawn over a picture, or not at all, may differ.
+/// Returns whether both sessions give the same picture of the volume. Settings that do not affect it may differ.
 bool look_the_same(Session before, const Session& after)
 {
     before.probe = after.probe;  // drawn separately over the picture, like distances
@@ -109,7 +109,7 @@ void SettingsEditor::take_session(Session session)
     if (!look_the_same(std::move(before), after)) others_.look_again();
 }
 
-/// Updates the window's data about the trace; the annotator itself passes changes to the scene.
+/// Updates drag state and settings after changes of trace or settings; the annotator passes changes to the scene.
 void SettingsEditor::show_changes(const Command& command)
 {
     Document& document = *document_;
@@ -124,7 +124,7 @@ void SettingsEditor::show_changes(const Command& command)
     if (!look_the_same(before, document.session)) others_.look_again();
 }
 
-/// Applies the effects of changed settings, except drawing a new picture.
+/// Applies the effects of changed settings, except that it does not draw the picture again.
 void SettingsEditor::settings_changed(const Session& before)
 {
     Document& document = *document_;
@@ -142,7 +142,7 @@ void SettingsEditor::settings_changed(const Session& before)
     }
 }
 
-/// Requests that view, probe etc. go into the journal: once the hand rests, and every few seconds while it moves.
+/// Requests that view, probe etc. are written to the journal: when they come to rest, or every few seconds in motion.
 void SettingsEditor::note_to_keep()
 {
     last_change_s_ = options_.now_s();
@@ -165,7 +165,7 @@ void SettingsEditor::note_edit()
     settings_to_record_ = was_set_in_this_turn_ = true;
 }
 
-/// Makes a history step of the changed settings once the hand has let go, so that a drag is one step.
+/// Makes changed settings a history step, but not while the user holds a control, so that a drag becomes one step.
 void SettingsEditor::follow_settings()
 {
     const bool is_being_set = std::exchange(was_set_in_this_turn_, false) || is_hand_down_;
@@ -174,7 +174,7 @@ void SettingsEditor::follow_settings()
     record_settings();
 }
 
-/// Makes a step now, so that undo reverts these settings separately from later changes.
+/// Makes changed settings a history step now, so that undo reverts them separately from later changes.
 void SettingsEditor::record_settings()
 {
     if (document_->annotator.stroke_is_running() || document_->annotator.work().is_saving_as()) return;
@@ -201,8 +201,8 @@ void SettingsEditor::step(int count, const char* done, const char* nothing, Way 
     say(steps == 1 ? sentence(done, ": ", last) : sentence(done, ": ", steps, " steps, the last: ", last));
 }
 
-/// Returns whether undo must do nothing because the user's last stroke changed nothing: the stroke is no step, so undo
-/// would revert the step before it. True only once after such a stroke; never in scripts, which count steps.
+/// Returns whether undo must do nothing, because the last stroke changed nothing and so is no step: undo would revert
+/// an earlier step. True only once after such a stroke; never in scripts, which count steps.
 bool SettingsEditor::follows_empty_stroke()
 {
     record_settings();
@@ -255,7 +255,7 @@ void SettingsEditor::act(const ChooseBelief& action)
     say(said);
 }
 
-/// Discards changes. Files stay unchanged. The journal keeps the changes: undo restores them next time.
+/// Discards unsaved changes without touching files. The journal keeps the changes, so that undo can restore them later.
 void SettingsEditor::discard()
 {
     if (!document_ || document_->only_looks() || !document_->annotator.work().disputes().empty()) return;

@@ -1,5 +1,5 @@
 #pragma once
-// Changes settings, applies the effects, and decides which changes become history steps; also undo and redo.
+// Changes settings, applies the effects, and decides which changes become history steps. Carries out undo and redo.
 
 #include "engine/workbench/desk/service.h"
 
@@ -26,30 +26,30 @@ public:
     void act(const RevertOp& action);
     void act(const ChooseBelief& action);
 
-    /// Records pending changes as one step of the history, and writes the view to the journal.
+    /// Makes pending changes one step of the history, and writes the view to the journal.
     void advance() override;
     /// Forgets state of the previous document.
     void begin_document();
     void take_session(Session session);
-    /// Updates the window's data about the trace; the annotator itself passes changes to the scene.
+    /// Updates drag state and settings after changes of trace or settings; the annotator passes changes to the scene.
     void show_changes(const Command& command);
-    /// Call after a change of the session that is to become a step of the history.
+    /// Call this after changing settings of the session that the history records.
     void note_edit();
-    /// Call after a change of view, probe and similar settings: these are written to the journal when the hand rests,
-    /// and every few seconds while it moves.
+    /// Call this after changing the view, the probe or similar settings. They are written to the journal when they come
+    /// to rest, and every few seconds while they keep changing.
     void note_to_keep();
-    /// Makes a step of pending changes, so that undo reverts them separately from later steps.
+    /// Makes pending changes a history step, so that undo reverts them separately from later changes.
     void record_settings();
     bool has_settings_to_record() const { return settings_to_record_; }
     /// Returns whether the view, the probe or similar settings changed since they were last written to the journal.
     bool has_view_to_keep() const { return to_keep_since_s_.has_value(); }
-    /// While the hand is down, changes make no history step, so that a drag is one step.
+    /// Sets whether the user holds a control. Meanwhile, changes make no history step, so that a drag becomes one step.
     void set_hand_down(bool is_down) { is_hand_down_ = is_down; }
-    /// Notes whether the stroke that just ended changed nothing; if so, the next undo only takes back that stroke.
+    /// Notes that a stroke has ended. If it changed nothing (`is_empty`), the next undo does nothing but report that.
     void note_stroke(bool is_empty);
-    /// Discards changes. Files stay unchanged. The journal keeps the changes: undo restores them next time.
+    /// Discards unsaved changes without touching files. The journal keeps the changes, so that undo can restore them.
     void discard();
-    /// Returns whether nothing was done since the work was discarded; saving is then unnecessary.
+    /// Returns whether the work was discarded and nothing was done since, so that nothing needs saving.
     bool is_discarded() const;
     HistoryModel model() const;
 
@@ -64,12 +64,12 @@ private:
     const Others others_;
     bool is_hand_down_ = false;
     bool settings_to_record_ = false, was_set_in_this_turn_ = false;
-    std::optional<double> to_keep_since_s_;       ///< time of the oldest view change that the journal lacks; null: none
-    double last_change_s_ = 0.0;                  ///< time of the last change to keep
-    std::optional<Session> session_before_hand_;  ///< the session before the hand began to change settings
-    /// Number of undoable steps when the work was discarded; while the number stays the same, nothing is saved.
+    std::optional<double> to_keep_since_s_;       ///< time of the oldest view change not in the journal; null: none
+    double last_change_s_ = 0.0;                  ///< time of the last change that the journal should get
+    std::optional<Session> session_before_hand_;  ///< the session before the user began to drag a control
+    /// Number of undoable steps after the work was discarded. While the number is the same, nothing is saved.
     std::optional<size_t> discarded_steps_;
-    /// Number of undoable steps when the last stroke ended without a change; undo then first takes back that stroke.
+    /// Number of undoable steps after a stroke that changed nothing; while it stays the same, undo reverts no step.
     std::optional<size_t> steps_at_empty_stroke_;
     Attempt recording_, keeping_;
 };

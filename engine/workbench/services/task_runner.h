@@ -1,6 +1,6 @@
 #pragma once
-// Long work in the background: each job computes its result on a worker, and this service then uses the result. The job
-// also checks names and folders, since those checks need the disk.
+// Long work in the background: a job computes its result on a worker thread, and this service uses the result. The job
+// also checks file names and folders, since such checks access the disk.
 
 #include <map>
 #include <memory>
@@ -16,7 +16,7 @@ public:
     /// Functions of other services that it calls.
     struct Others {
         Call<void(const Jobs::Finished&)> end_save;
-        Call<bool(const Jobs::Finished&)> end_reading;  ///< returns whether the job was the opening's
+        Call<bool(const Jobs::Finished&)> end_reading;  ///< returns whether the job was the reading job of an opening
         Call<bool(Jobs::Number)> cancel;                ///< cancels another service's job; returns whether it is one
         Call<void(std::vector<Jobs::State>&)> add_loading;
         Call<void(std::vector<Jobs::State>&)> add_reading;
@@ -30,13 +30,13 @@ public:
     void act(const EvaluateTask& task);
     void act(const CancelJob& action);
 
-    /// Cancels all jobs but saves and copies of the work.
+    /// Cancels all jobs, except saves and copies of the work.
     void cancel_all();
 
     /// Handles jobs that have ended.
     void advance() override;
     bool advances_without_document() const override { return true; }
-    /// Returns whether a job is writing files that the user requested; quitting and opening another file wait for it.
+    /// Returns whether a job is writing files that the user requested. Quitting and opening other files wait for that.
     bool is_writing() const { return !writers_.empty(); }
     JobModel model() const;
 
@@ -46,7 +46,7 @@ private:
 
     const PreferenceKeeper& keeper_;
     const Others others_;
-    /// With what a cancelled job leaves on the disk; written by the worker before the job ends
+    /// Jobs that write files, each with a text in which a cancelled job states which files it leaves on the disk.
     std::map<Jobs::Number, std::shared_ptr<const std::string>> writers_;
 };
 

@@ -10,7 +10,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// Returns both neighbours of the selected node if deleting it cuts the trace: it has two, and no link joins them.
+/// Returns the two neighbours of the selected node if only this node connects them, so that deleting it cuts the trace.
 std::optional<std::pair<uint32_t, uint32_t>> ends_of_cut(const TraceGraph& trace)
 {
     const std::optional<uint32_t> node = trace.selection().node();
@@ -20,7 +20,7 @@ std::optional<std::pair<uint32_t, uint32_t>> ends_of_cut(const TraceGraph& trace
     return trace.internode_between(ends.first, ends.second) ? std::nullopt : std::optional(ends);
 }
 
-/// Returns whether the selected node lies outside the volume; nodes may do so up to a limited distance.
+/// Returns whether the selected node lies outside the volume, which is permitted up to some distance.
 bool lies_outside(const TraceGraph& trace, const VolumeInfo& volume)
 {
     const std::optional<uint32_t> node = trace.selection().node();
@@ -42,7 +42,7 @@ Tracer::Tracer(Desk& desk, PreferenceKeeper& keeper, Others others)
     : Service(desk), keeper_(keeper), others_(std::move(others))
 {}
 
-/// Gives a new node the radius of the structure around it, if this is requested and the radius can be measured.
+/// Gives a new node the radius of the structure around it, if settings ask for that and the radius can be measured.
 TraceOp Tracer::with_radius(TraceOp op) const
 {
     NodeOp* const node = std::get_if<NodeOp>(&op);
@@ -84,7 +84,7 @@ void Tracer::trace(const TraceOp& asked)
     say(said);
 }
 
-/// Stores the ends of a cut and selects one of them, so that tracing continues there.
+/// Remembers the two ends of a cut, and selects one of them, so that tracing continues there.
 void Tracer::note_cut(std::optional<std::pair<uint32_t, uint32_t>> ends)
 {
     document_->cut_ends = ends;
@@ -109,7 +109,7 @@ void Tracer::act(const MendCut&)
     document_->cut_ends.reset();
 }
 
-/// Returns the nearest node, if its distance is at most half of a voxel's diagonal.
+/// Returns the node nearest to a point, if the distance is at most half of a voxel's diagonal.
 std::optional<uint32_t> Tracer::node_in_voxel(const glm::dvec3& voxel) const
 {
     const glm::dvec3& spacing = document_->volume().spacing;
@@ -117,7 +117,7 @@ std::optional<uint32_t> Tracer::node_in_voxel(const glm::dvec3& voxel) const
     return nearest_node_of(trace, groups_found_nearby(document_->session), voxel * spacing, 0.5 * glm::length(spacing));
 }
 
-/// Returns the point on the centre line drawn at a pixel, if lines attract tools; includes the selected node's lines.
+/// Returns the point under a pixel on a centre line, if lines attract tools. The selected node's own lines count, too.
 std::optional<ToolPlace> Tracer::line_at(const Pane& seen, const glm::dvec2& pixel) const
 {
     if (!document_->session.probe.touch.to_lines) return std::nullopt;
@@ -128,7 +128,7 @@ std::optional<ToolPlace> Tracer::line_at(const Pane& seen, const glm::dvec2& pix
     const glm::dvec3 there = unproject(seen.shot.camera, seen.pixels(), pixel, hit.depth);
     const glm::dvec3 way = glm::normalize(sight_through(seen.shot.camera, there));
     const glm::dvec3 a = trace.node(internode.a).position, b = trace.node(internode.b).position;
-    // Find the point of the line that is nearest to the line of sight.
+    // Find the point of the centre line that is nearest to the line of sight.
     const auto across = [&](const glm::dvec3& v) { return v - way * glm::dot(v, way); };
     const glm::dvec3 begin = across(a - there), along = across(b - a);
     const double square = glm::dot(along, along);
@@ -136,7 +136,7 @@ std::optional<ToolPlace> Tracer::line_at(const Pane& seen, const glm::dvec2& pix
     return ToolPlace{glm::mix(a, b, share), {}, hit.internode};
 }
 
-/// Carries out the operation on the part of the trace that attracts the tool at `place`. Returns whether there was one.
+/// If part of the trace attracts the tools at `place`, carries out the operation on this part, and returns true.
 bool Tracer::add_drawn_node(const ToolPlace& place)
 {
     const glm::dvec3& spacing = document_->volume().spacing;
@@ -149,8 +149,8 @@ bool Tracer::add_drawn_node(const ToolPlace& place)
     return true;
 }
 
-/// Adds a node at the visible point or, if `centered_nodes` is set, in the middle of the structure that the line of
-/// sight enters there; in slices, at the clicked point.
+/// Adds a node at the visible point. If `centered_nodes` is set, adds it in the middle of the structure that the line
+/// of sight enters there; in slices, always at the point that was clicked.
 void Tracer::act(const NodeAt& action)
 {
     const Pane seen = others_.pane(action.pane);
@@ -214,7 +214,7 @@ void Tracer::act(const SelectAt& action)
     others_.set(edited(document.session, [&](Session& s) { s.probe.brush.group = group; }));
 }
 
-/// Selects the segment of the selected part. A node where segments meet, or that belongs to no segment, stays selected.
+/// Extends the selection to the segment of the selected part. A node in several segments, or in none, stays selected.
 void Tracer::select_segment()
 {
     try {
@@ -224,7 +224,7 @@ void Tracer::select_segment()
     }
 }
 
-/// Returns whether the volume hides the hit part of the trace; the trace's own rods hide nothing.
+/// Returns whether the volume hides the trace at this pixel; surfaces that show the trace itself do not count.
 bool Tracer::is_hidden(const Pane& seen, const glm::dvec2& pixel, const TraceHit& hit) const
 {
     constexpr double OPAQUE_ENOUGH = 0.9, APART_VOXELS = 2.0;
@@ -287,7 +287,7 @@ void Tracer::act(const DragNode& action)
     if (document_->drags_node) this->trace(document_->drag_move());
 }
 
-/// Adds a node where tools act. If a node attracts the tools, links and selects that node instead.
+/// Adds a node where tools act. If an existing node attracts the tools, links and selects that node instead.
 void Tracer::add_node_here()
 {
     add_node_at(node_or_link_at_probe(desk_.model()));

@@ -1,5 +1,5 @@
 #pragma once
-// The trace: its operations as commands of the history (scripts use the same); selecting and adding by pointing.
+// Carries out operations on the trace as commands of the history, as scripts do; selects and adds by pointing.
 
 #include "engine/workbench/desk/preference_keeper.h"
 #include "engine/workbench/desk/service.h"
@@ -36,7 +36,7 @@ public:
     void act(const MendCut& action);
 
     void trace(const TraceOp& op);
-    /// Adds a node where tools act. If a node attracts the tools, links and selects that node instead.
+    /// Adds a node where tools act. If an existing node attracts the tools, links and selects that node instead.
     void add_node_here();
     TraceModel model() const;
 

@@ -86,7 +86,7 @@ void Viewer::act(const Zoom& action)
                               document_->probe_voxel()));
 }
 
-/// Shows the slices. Their position is saved like the camera, and does not count as a change of the work.
+/// Sets the slices to show. Like the camera's, their position is saved, but does not count as a change of the work.
 void Viewer::show_slices(SliceSettings slices)
 {
     document_->session.view.slices = slices;
@@ -94,10 +94,10 @@ void Viewer::show_slices(SliceSettings slices)
     others_.note_to_keep();
 }
 
-/// Moves the slices along with a probe that has left their plane, whatever moved the probe.
+/// If the probe has left the plane of the slices, moves the slices to the probe, whatever moved the probe.
 void Viewer::follow_slices()
 {
-    constexpr double STIR_VOXELS = 0.05;  // ignores a stylus's slight motion: the user may have moved the slices
+    constexpr double STIR_VOXELS = 0.05;  // minimum motion, so that a stylus at rest does not undo the user's own moves
     if (!options_.slices_follow) return;
     Document& document = *document_;
     const glm::dvec3 voxel = document.probe_voxel();
@@ -110,7 +110,7 @@ void Viewer::follow_slices()
     if (next == document.session.view.slices) return;
     const Set following = edited(document.session, [&](Session& s) { s.view.slices = next; });
     show_slices(next);
-    if (log_) log_(line_of(following));  // pixels of slices in later lines refer to the slices' new position
+    if (log_) log_(line_of(following));  // later log lines with pixels of slices refer to the new position
 }
 
 void Viewer::follow_look()
@@ -124,14 +124,14 @@ void Viewer::follow_look()
             document.screen.look_from(document.camera, document.probe_voxel());
         look_is_stale_ = camera_moved_ = false;
     }
-    // Strokes and the servo request bricks themselves, so the probe's bricks are not requested while one of them runs.
+    // Strokes and the servo request the bricks that they need. If neither runs, request the bricks near the probe.
     if (!document.touch.servo() && !document.annotator.stroke_is_running())
         renderer_.volume().prefer(document.voxels_around_probe());
     document.screen.show_probe(document.probe_look());
     document.screen.advance();
 }
 
-/// Uses the current camera and probe: the screen follows them once a frame, but a frame may have several actions.
+/// Uses the current camera and probe, not those of the screen, which lag if several actions come between frames.
 Pane Viewer::pane(size_t index) const
 {
     const std::vector<Pane> panes = panes_of(document_->session.view, document_->camera, pixels_,
@@ -311,7 +311,7 @@ void Viewer::act(const FitView& action)
 void Viewer::act(const ResetView&)
 {
     const Session& session = document_->session;
-    // The window's last camera, named by a session opened earlier, is replaced by the side that shows most.
+    // The camera "window" is where an earlier window was closed, so it is no view to return to: use the default view.
     const std::string name = session.camera_name == "window" ? std::string() : session.camera_name;
     look_from(camera_named(session, name, document_->volume()));
     say("The view is reset");

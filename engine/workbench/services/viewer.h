@@ -39,19 +39,19 @@ public:
     /// Draws the whole picture again.
     void look_again() { look_is_stale_ = true; }
     void look_from(const Camera& camera);
-    /// Uses the current camera and probe: the screen follows only once a frame, but a frame may have several actions.
+    /// Uses the current camera and probe, not those of the screen, which lag if several actions come between frames.
     Pane pane(size_t index) const;
-    /// Returns the visible point at a pixel of a pane, in volume space; in a slice, a point of its plane. Null: none.
+    /// Returns the visible point at a pixel of a pane, in volume space; in a slice, the point of its plane. Null: none.
     std::optional<glm::dvec3> seen_at(const Pane& pane, const glm::dvec2& pixel) const;
-    /// Returns the visible point whose depth along the view differs from `depth` by at most `reach`.
+    /// Like seen_at(), but the point's depth along the view may differ from `depth` by at most `reach`.
     std::optional<glm::dvec3> seen_near(const Pane& pane, const glm::dvec2& pixel, double depth, double reach) const;
-    /// Returns the size of the picture; 0, 0: no picture is drawn.
+    /// Returns the size of the picture in pixels; 0, 0: no picture is drawn.
     const glm::uvec2& pixels() const { return pixels_; }
-    /// Returns whether there is a picture and it does not yet show the last changes.
+    /// Returns whether a picture exists that does not show the last changes yet.
     bool is_stirring() const { return pixels_.x > 0 && pixels_.y > 0 && (look_is_stale_ || camera_moved_); }
     void set_pointer(const std::optional<Pointer>& pointer) { pointer_ = pointer; }
     const std::optional<Pointer>& pointer() const { return pointer_; }
-    /// Shows the box of the cutting planes, while they are moved and for a short time afterwards.
+    /// Shows the box of the cutting planes for a short time; called whenever they move.
     void show_cut_box();
     bool shows_cut_box() const { return options_.now_s() < cut_shown_until_s_; }
     ViewModel model() const;
@@ -66,7 +66,7 @@ private:
     glm::uvec2 pixels_{0};
     bool look_is_stale_ = true, camera_moved_ = false;
     std::optional<Pointer> pointer_;
-    glm::dvec3 followed_voxel_{0.0};  ///< position of the probe that the slices last followed
+    glm::dvec3 followed_voxel_{0.0};  ///< position of the probe when the slices last followed it
     double cut_shown_until_s_ = 0.0;
     Attempt looking_;
 };

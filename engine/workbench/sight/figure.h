@@ -1,6 +1,6 @@
 #pragma once
-// Scale bar, axes, distances and pane titles, as drawn into picture files (marks.h). Pure; the main thread builds a
-// figure while the model exists, and any thread may draw it.
+// Scale bar, axes, distances and pane titles (marks.h), as drawn into picture files. Pure. The main thread builds a
+// figure while the model exists; any thread may draw the figure.
 
 #include <functional>
 #include <span>
@@ -12,27 +12,27 @@
 
 namespace shvr::ui {
 
-/// A line of text as the coverage of each pixel; the image's height is the line height.
+/// A line of text as an image whose pixels state the coverage by text; its height is the height of a line.
 struct TextImage {
     glm::ivec2 pixels{0};
     std::vector<uint8_t> coverage;
 };
-/// Draws texts, all with the same height in pixels. Main thread only.
+/// A function that draws texts into images, with the same height in pixels for all. Main thread only.
 using TextDrawer = std::function<std::vector<TextImage>(std::span<const std::string> texts, double pixels)>;
 
 struct Figure {
     struct Part {
-        PixelBox box;  ///< box of the pane within the whole picture
+        PixelBox box;  ///< the pane's box within the whole picture
         std::vector<Stroke> strokes;
         std::vector<Stamp> stamps;
     };
     std::vector<Part> parts;
 };
 
-/// Builds the figure. `units`: pixels per unit of the interface, times the picture's scale. Without a drawer of texts,
-/// the figure has no labels.
+/// Builds the figure. `units`: pixels of the picture per unit of the interface. If `draw_texts` is null, the figure has
+/// no labels.
 Figure figure_of(const Model& model, std::span<const Pane> panes, double units, const TextDrawer& draw_texts);
-/// Draws the figure over `rows`, the part of the picture that starts at `first_row`.
+/// Draws the figure over `rows`, a band of the picture whose first row is `first_row`.
 void draw(const Figure& figure, ImageF& rows, uint32_t first_row);
 void draw(const Figure& figure, Image8& picture);
 

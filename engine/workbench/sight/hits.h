@@ -1,5 +1,5 @@
 #pragma once
-// Finds the part of a trace under a pixel. Pure; any thread, while the trace does not change.
+// Finds which part of a trace is under a pixel. Pure; any thread, while the trace does not change.
 
 #include <bitset>
 #include <optional>
@@ -15,18 +15,18 @@ struct TraceHit {
     double depth = 0.0;                       ///< physical units along the view
     double radius = 0.0;                      ///< radius in physical units
 };
-/// Returns a node within its ring or within 6 pixels of its centre (of several, the one nearest to the viewer). Without
-/// such a node, returns an internode within 4 pixels of its centre line. In a slice, considers only parts that cross
-/// its plane or lie within half a voxel of it. Parts in groups that are not `drawn` are not there. Visits the whole
-/// trace.
+/// Returns a node within its ring or within 6 pixels of its centre (of several, the one nearest to the viewer). If
+/// there is none, returns an internode within 4 pixels of its centre line. In a slice, considers only parts that cross
+/// its plane or lie within half a voxel of it. Ignores parts in groups that are not in `drawn`. Takes time linear in
+/// the trace's size.
 TraceHit trace_hit(const TraceGraph& trace, const Pane& pane, const glm::dvec2& pixel, const VolumeInfo& volume,
                    const std::bitset<256>& drawn);
 
-/// The groups whose nodes and internodes a pane draws. Slices draw them without the surfaces of `view.meshes`. Cutting
-/// planes cut no surfaces, so they take nothing away.
+/// Returns the groups whose nodes and internodes a pane draws. Slices draw them even if `view.meshes` is off. Cutting
+/// planes do not cut the trace, so they hide no group.
 std::bitset<256> groups_in_pane(const Session& session, const Pane& pane);
 
-/// Returns the distance by which a point lies behind the plane of a slice.
+/// Returns how far a point lies behind the plane of a slice, in physical units.
 double behind_plane(const Camera& camera, const glm::dvec3& point);
 
 }  // namespace shvr::ui

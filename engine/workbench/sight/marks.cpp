@@ -18,7 +18,7 @@ constexpr std::array<glm::dvec3, 3> AXES{glm::dvec3(0.95, 0.12, 0.08), glm::dvec
                                          glm::dvec3(0.15, 0.4, 1.0)};
 constexpr double DASH = 6.0, GAP = 5.0;
 
-/// Returns a name cut to at most MOST characters, counted as UTF-8 characters.
+/// Returns a name cut to at most MOST characters, without splitting a UTF-8 sequence.
 std::string shortened_name(const std::string& name)
 {
     constexpr size_t MOST = 32;
@@ -73,7 +73,7 @@ private:
         const auto at = project(pane_.shot.camera, pixels_, point);
         return at ? std::optional(at->pixel) : std::nullopt;
     }
-    /// Draws a line with a halo, so that it is visible on any picture.
+    /// Draws a line with a halo around it, so that the line is visible on any picture.
     void line(const glm::dvec2& from, const glm::dvec2& to, const glm::dvec3& color, double width = 1.5)
     {
         marks_.strokes.push_back({from, to, DARK, (width + 2.0) * units_});
@@ -107,7 +107,7 @@ private:
         marks_.labels.push_back({at, anchor, std::move(text), color});
     }
 
-    /// Draws the cross-section of the brush's reach with the pane's plane.
+    /// Draws the outline of the brush where it intersects the plane of the pane.
     void brush_ring()
     {
         const BrushSettings& brush = model_.brush();
@@ -125,7 +125,7 @@ private:
                color_);
     }
 
-    /// Draws the part of the trace that crosses the slice's plane, or lies within a voxel of it.
+    /// Draws the parts of the trace that cross the slice's plane or lie within a voxel of it.
     void trace_in_slice()
     {
         const Camera& camera = pane_.shot.camera;
@@ -164,7 +164,7 @@ private:
                glm::all(glm::lessThan(glm::min(a, b), glm::dvec2(pixels_)));
     }
 
-    /// Marks the node or centre line that attracts the tools.
+    /// Marks the node or the centre line that currently attracts the tools.
     void drawn_tool()
     {
         if (!model_.tool_node && !model_.tool_internode) return;
@@ -175,7 +175,7 @@ private:
         ring(*at, 5.0 * units_, LINK, 2.0);
     }
 
-    /// Draws the link that a node added now would get, with its length as a label.
+    /// Draws the link that a node would get if it were added now, labelled with its length.
     void link()
     {
         const std::optional<uint32_t> selected = model_.trace.selection().node();
@@ -203,7 +203,7 @@ private:
         label(0.5 * (*from + *to), {0.5, 1.2},
               length_in_words(length_of(ends, model_.volume.spacing), model_.volume.unit), MEASURED);
     }
-    /// Returns whether a measured line crosses the plane of the slice, or lies within a voxel of it.
+    /// Returns whether the line of a measurement crosses the plane of the slice or comes within a voxel of it.
     bool is_near_plane(const glm::dvec3& a, const glm::dvec3& b) const
     {
         const double from = behind_plane(pane_.shot.camera, a), to = behind_plane(pane_.shot.camera, b);
@@ -218,7 +218,7 @@ private:
         measurement(*model_.measuring_from, leads ? *model_.measuring_to : *model_.measuring_from, true);
     }
 
-    /// Draws a small cross at the pivot of rotation, if the user picked one.
+    /// Draws a small cross at the pivot of rotation, if the user has picked one.
     void pivot()
     {
         if (!is_main() || model_.session.interaction.pivot != Pivot::picked || !model_.picked_pivot) return;
@@ -229,7 +229,7 @@ private:
         line(*at - glm::dvec2(0.0, reach), *at + glm::dvec2(0.0, reach), LIGHT);
     }
 
-    /// Draws the axes in the lower left corner; an axis that points towards the viewer appears short.
+    /// Draws the axes in the lower left corner, in projection: an axis along the line of sight appears short.
     void axes()
     {
         if (pane_.kind == Pane::Kind::map || pane_.shot.right_eye) return;
@@ -246,7 +246,7 @@ private:
         }
     }
 
-    /// Draws the scale bar in the lower right corner. In perspective, its label states the depth at which it applies.
+    /// Draws the scale bar in the lower right corner. In perspective, its label states the depth at which it is valid.
     void scale()
     {
         if (pane_.kind == Pane::Kind::map || pane_.shot.right_eye) return;
@@ -264,8 +264,8 @@ private:
         label(end - 1.5 * tick, {1.0, 1.0}, bar.text + (is_perspective ? " at the middle of the view" : ""));
     }
 
-    /// Lists names and colours of painted or traced groups in the upper right corner of the first pane. Each colour
-    /// stands to the right of its name, so that the width of names need not be measured.
+    /// Lists the groups that are painted or traced, in the upper right corner of the first pane. Each colour stands to
+    /// the right of the group's name, so that right-aligned names need not be measured.
     void groups()
     {
         if (index_ != 0 || pane_.kind == Pane::Kind::map || pane_.shot.right_eye) return;
@@ -314,14 +314,14 @@ private:
             text = std::to_string(std::lround(100.0 * *model_.reading.relevant_share)) + " % full, " + text;
             meter(at->pixel, reach + 4.0 * units_, *model_.reading.relevant_share);
         }
-        // If the right lacks room, the text goes to the left; CHARACTER is an upper bound of a character's width.
+        // Puts the text to the left if the right side lacks room. CHARACTER is an upper bound of a character's width.
         constexpr double CHARACTER = 8.0;
         const double beside = 0.75 * reach + 6.0 * units_;
         const bool has_room =
             at->pixel.x + beside + CHARACTER * units_ * double(text.size()) < double(pixels_.x) || at->pixel.x < beside;
         label(at->pixel + glm::dvec2(has_room ? beside : -beside, beside), {has_room ? 0.0 : 1.0, 0.0}, text);
     }
-    /// Draws an arc around the probe, clockwise from the top, whose length is the relevant share of the probe's ball.
+    /// Draws an arc around the probe, clockwise from the top; its angle shows the relevant share of the probe's ball.
     void meter(const glm::dvec2& middle, double radius, double share)
     {
         constexpr int WHOLE = 60;

@@ -1,8 +1,8 @@
 #pragma once
 // Lines and labels that the window draws over a pane: the brush's ring and the trace in slices, the link that a new
-// node would get, distances, a scale bar, directions of the axes, the groups, and the pane's title. If requested,
-// picture files contain them too, except those that only help the hand (figure.h). Pure; main thread only, while the
-// model exists.
+// node would get, distances, a scale bar, directions of the axes, the groups, and the pane's title. On request, they
+// are also drawn into picture files, except for those that only guide the hand (figure.h). Pure; main thread only,
+// while the model exists.
 
 #include <string>
 #include <vector>
@@ -12,12 +12,12 @@
 
 namespace shvr::ui {
 
-/// Font size at one pixel per unit of the interface.
+/// Font size in pixels, if a unit of the interface has one pixel.
 inline constexpr double FONT_UNITS = 14.0;
 
 struct Label {
     glm::dvec2 at{0.0};      ///< pixels of the pane
-    glm::dvec2 anchor{0.0};  ///< the part of the text at `at`; 0, 0: upper left corner; 1, 1: lower right corner
+    glm::dvec2 anchor{0.0};  ///< point of the text that lies at `at`: 0, 0: upper left corner; 1, 1: lower right corner
     std::string text;
     glm::dvec3 color{1.0};  ///< linear light
 };
@@ -28,7 +28,7 @@ struct Marks {
 
 enum class MarksFor { screen, picture };
 
-/// `pane`: as displayed. `index`: the pane's number. `units`: pixels per unit of the interface; 2 on a HiDPI screen.
+/// `pane`: as displayed. `index`: the pane's number. `units`: pixels per unit of the interface, such as 2 on HiDPI.
 Marks marks_of(const Model& model, const Pane& pane, size_t index, double units = 1.0,
                MarksFor purpose = MarksFor::screen);
 

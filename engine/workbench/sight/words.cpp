@@ -18,7 +18,7 @@ std::string digits(double value)
     return text;
 }
 
-/// Formats an integer with all of its digits, and other values as `digits` does.
+/// Formats an integer with all digits, and any other value with the few digits of `digits`.
 std::string intensity_in_words(double value)
 {
     constexpr double MAX_EXACT = 9007199254740992.0;  // 2^53
@@ -36,10 +36,10 @@ std::string three(const glm::dvec3& values)
     return digits(values.x) + ", " + digits(values.y) + ", " + digits(values.z);
 }
 
-/// Units, each a thousand times the previous one.
+/// Units of length, each a thousand times as long as the previous one.
 constexpr const char* THOUSANDS[] = {"nm", "um", "mm", "m"};
 
-/// Formats the length in the unit that needs the fewest zeros.
+/// Formats a length in the unit with which the number has the fewest zeros.
 std::string readable(double length, std::string unit)
 {
     auto at = std::ranges::find(THOUSANDS, unit);
@@ -119,7 +119,7 @@ double depth_below_surface(const Camera& camera, const CutBox& cut, const Volume
     const glm::dvec3 lower = cut.lower * volume.spacing;
     const glm::dvec3 upper = glm::min(cut.upper, glm::dvec3(volume.size)) * volume.spacing;
     const glm::dvec3 forward = axes_of(camera).forward;
-    // In perspective, the view line through the point starts at the eye; otherwise it is parallel to the view's axis.
+    // In perspective, the line of sight starts at the eye; otherwise it is parallel to the view's axis.
     const glm::dvec3 from = camera.projection == Camera::Projection::perspective
                                 ? camera.eye
                                 : point - forward * glm::dot(point - camera.eye, forward);

@@ -11,25 +11,25 @@
 
 namespace shvr::ui {
 
-/// Returns a text such as "12.35 mm", with four digits. Micrometres are spelled with the Greek letter.
+/// Returns a text such as "12.35 mm", with four digits. Displays micrometres with the Greek letter.
 std::string length_in_words(double length, const std::string& unit);
 /// Returns the physical length of a measurement.
 double length_of(const Measurement& measurement, const glm::dvec3& spacing);
-/// Returns "voxel 120, 80, 33 (1.2, 0.8, 0.33 mm)"; voxels count from 0. Without a unit, names the voxel only.
+/// Returns "voxel 120, 80, 33 (1.2, 0.8, 0.33 mm)", counting voxels from 0. Without a unit, states the voxel only.
 std::string place_in_words(const glm::dvec3& voxel, const VolumeInfo& volume);
-/// Returns a text such as "value 12345 + 30", "value ..." or "outside". Integers have all digits, other values four.
+/// Returns a text such as "value 12345 + 30", "value ..." or "outside". Integers get all digits, other values four.
 std::string value_in_words(const Reading& reading);
-/// Formats the whole reading in one line, for the status bar. `group_name`: name of the reading's group.
+/// Formats a reading in one line, for the status bar. `group_name`: name of the group at the reading's voxel.
 std::string in_words(const Reading& reading, const VolumeInfo& volume, const std::string& group_name);
-/// Returns "z 214 of 512, 1.284 mm": slices count from 1, and the position is that of the slice's middle.
+/// Returns "z 214 of 512, 1.284 mm": slices count from 1, and the length is the position of the slice's middle.
 std::string slice_in_words(int axis, const glm::dvec3& voxel, const VolumeInfo& volume);
 /// Returns a table with a heading and tab-separated columns: number, length, unit, and both ends in voxels.
 std::string table_of(std::span<const Measurement> measurements, const VolumeInfo& volume);
 
-/// Returns the depth of a point along the view, from the start of the drawn volume; at least 0.
+/// Returns the depth of a point along the line of sight, from where the drawn volume begins; at least 0.
 double depth_below_surface(const Camera& camera, const CutBox& cut, const VolumeInfo& volume, const glm::dvec3& point);
 
-/// A scale bar: its length is the longest of 1, 2 or 5 times a power of ten that takes at most `longest_pixels`.
+/// A scale bar. Its length is 1, 2 or 5 times a power of ten: the longest that takes at most `longest_pixels`.
 struct ScaleBar {
     double pixels = 0.0;
     std::string text;  ///< "200 µm"

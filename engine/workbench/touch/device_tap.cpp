@@ -30,7 +30,7 @@ void TapLink::begin_tick() noexcept
     Latest<ForceSettings>* const settings = settings_.load(std::memory_order_acquire);
     if (!settings || !orders_.take()) return;
     const TapOrder& order = orders_.value();
-    settings->publish(order.settings.force);  // the servo takes these settings next, on this thread
+    settings->publish(order.settings.force);  // the servo reads these settings next, on this thread
     has_new_settings_ = true;
     if (order.recording != recording_) {
         recording_ = order.recording;
@@ -38,7 +38,7 @@ void TapLink::begin_tick() noexcept
     }
 }
 
-/// Records the first time requested in a tick as the tick's time.
+/// Stores the time: that of the tick is the first time that the servo requests in it.
 void TapLink::note_now(uint64_t now_ns) noexcept
 {
     if (!std::exchange(is_new_tick_, false)) return;
@@ -51,7 +51,7 @@ void TapLink::note_read(ReadResult result, const DeviceState& state) noexcept
     now_.tick.read = !was_written_ && result != ReadResult::fresh ? ReadResult::lost : result;
     now_.tick.state = state;
     if (const Latest<RelevancePatch>* const relevance = relevance_.load(std::memory_order_acquire)) {
-        now_.relevance = relevance->value().sequence;  // the servo took this relevance in this tick, on this thread
+        now_.relevance = relevance->value().sequence;  // this is the relevance that the servo used in this tick
         now_.tick.relevance_time_ns = now_.relevance > 0 ? relevance->value().time_ns : 0;
     }
     if (result != ReadResult::fresh) return;
@@ -74,7 +74,7 @@ void TapLink::note_write(const glm::dvec3& asked_n, const glm::dvec3& force_n, b
     plot_.heat = most > 0.0 ? heat_.square / most : 0.0;
     add_to_plot(glm::length(force_n));
     if (recording_ != 0) put();
-    has_new_settings_ = recording_ == 0 && has_new_settings_;  // a recording begins with the settings in force
+    has_new_settings_ = recording_ == 0 && has_new_settings_;  // a recording begins with the settings then in force
 }
 
 void TapLink::put() noexcept

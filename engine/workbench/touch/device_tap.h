@@ -20,11 +20,11 @@
 
 namespace shvr::ui {
 
-/// A plane in the device's frame that holds the probe: the force along its normal is removed, unless `is_on` is false.
+/// A plane, in the device's frame, that holds the probe: removes the force along its normal, unless `is_on` is false.
 struct PlaneHold {
     bool is_on = false;
     glm::dvec3 normal{0.0, 0.0, 1.0}, point_m{0.0};
-    uint32_t count = 0;  ///< number of planes so far; when it changes, a jump of the probe is no glitch
+    uint32_t count = 0;  ///< number of planes so far; after a change, a jump of the probe is expected
     bool operator==(const PlaneHold&) const = default;
 };
 
@@ -35,13 +35,13 @@ struct TapOrder {
     bool operator==(const TapOrder&) const = default;
 };
 
-/// Forces of the last seconds, and values that the servo's state lacks.
+/// Forces of the last seconds, and values that the servo's own state does not have.
 struct TapState {
     static constexpr size_t BARS = 250;
     static constexpr uint32_t TICKS_A_BAR = 20;
-    std::array<float, BARS> force_n{};  ///< maximum force of every TICKS_A_BAR ticks; index `bars` % BARS is the oldest
+    std::array<float, BARS> force_n{};  ///< maximum force of each TICKS_A_BAR ticks; the oldest is at `bars` % BARS
     uint64_t bars = 0;
-    double heat = 0.0;         ///< share of the motors' continuous limit, from the model in haptics/safety.h
+    double heat = 0.0;         ///< motor heat as a share of the continuous limit, by the model in haptics/safety.h
     uint64_t lost_states = 0;  ///< gaps in the device's sequence numbers
 };
 
@@ -50,13 +50,13 @@ struct RecordedTick {
     bool has_settings = false;
     TraceSettings settings;
     DeviceCaps caps;
-    uint64_t relevance = 0;  ///< sequence of the relevance in use; 0: none
+    uint64_t relevance = 0;  ///< sequence number of the relevance in use; 0: none
     uint32_t recording = 0;
 };
 
 class TapLink {
 public:
-    /// `recording`: number of the recording that begins with the first tick.
+    /// `recording`: number of a recording that begins with the first tick; 0: none.
     explicit TapLink(uint32_t recording = 0) : ring_(RING), recording_(recording)
     {
         if (recording != 0) relevance_log_.begin();
@@ -64,7 +64,7 @@ public:
     // Main thread
     Latest<TapOrder>& orders() { return orders_; }
     Latest<TapState>& state() { return state_; }
-    /// Sets the destination of settings, and the relevance that the servo uses.
+    /// Connects the settings, which the servo receives, and the relevance, which the servo uses.
     void connect(Latest<ForceSettings>& settings, const Latest<RelevancePatch>& relevance)
     {
         relevance_.store(&relevance, std::memory_order_release);
@@ -72,7 +72,7 @@ public:
     }
     RelevanceLog& relevance_log() { return relevance_log_; }
     bool take(RecordedTick& tick);
-    /// Returns whether ticks are missing because they were not fetched in time.
+    /// Returns whether ticks were lost because the main thread did not fetch them in time.
     bool has_overrun() const { return has_overrun_.load(std::memory_order_relaxed); }
 
     // The servo's thread
@@ -152,11 +152,11 @@ private:
     DeviceState raw_;
 };
 
-/// A servo, its device and the tap between them. Main thread.
+/// A servo and its device, with the tap between them. Main thread only.
 struct TappedServo {
     explicit TappedServo(std::shared_ptr<HapticDevice> with, std::unique_ptr<Pacing> pacing = real_pacing(),
                          uint32_t recording = 0);
-    /// Returns the relevance to fill before `publish_relevance()`. Both are for one thread, main or not.
+    /// Returns the relevance to fill in before publish_relevance(). One thread, which may be any, must call both.
     RelevancePatch& relevance() { return servo.relevance().writing(); }
     void publish_relevance();
     std::shared_ptr<HapticDevice> device;

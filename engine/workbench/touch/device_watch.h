@@ -1,6 +1,6 @@
 #pragma once
-// Looks for haptic devices and opens them on a thread of its own, since looking and opening may wait for hardware or a
-// service. The functions here are for the main thread; only the destructor waits for the watch's thread.
+// Looks for haptic devices and opens them, on a thread of its own, since both may wait for hardware or for a service.
+// The functions here are for the main thread. None of them waits, except the destructor.
 
 #include <condition_variable>
 #include <functional>
@@ -15,19 +15,19 @@
 
 namespace shvr::ui {
 
-/// Functions that list and open devices; tests provide their own. Called on the watch's thread.
+/// Functions that list devices and open them, called on the watch's thread. Tests provide their own.
 struct DeviceSource {
     std::function<std::vector<DeviceListing>()> list;
-    /// Opens the device; returns null for the mouse. Fails with a one-sentence reason.
+    /// Opens the device with this id; returns null for the mouse. Fails with the reason, in one sentence.
     std::function<std::unique_ptr<HapticDevice>(const std::string& id)> open;
 };
-/// Returns the source for this machine, with the profiles that ship.
+/// Returns functions for this machine's devices, with the device profiles that ship with the program.
 DeviceSource devices_of_machine(bool allow_force);
 
 class DeviceWatch {
 public:
     explicit DeviceWatch(DeviceSource source);
-    /// Waits until an opening in progress has ended.
+    /// Waits until the opening of a device in progress has ended.
     ~DeviceWatch();
     DeviceWatch(const DeviceWatch&) = delete;
 
@@ -38,7 +38,7 @@ public:
     struct Opened {
         std::string id;
         std::unique_ptr<HapticDevice> device;
-        std::string failure;  ///< a sentence; empty: the device is open
+        std::string failure;  ///< reason, as a sentence, why the device could not be opened; empty: it is open
     };
     struct News {
         std::optional<std::vector<DeviceListing>> devices;

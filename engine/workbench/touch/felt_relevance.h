@@ -1,5 +1,5 @@
 #pragma once
-// Passes relevance bits to the servo, and computes them from a volume if no mirror does. Any thread.
+// Passes relevance bits (which voxels can be felt) to the servo, or computes them from a volume. Any thread.
 
 #include "engine/live/relevance_mirror.h"
 #include "engine/session/session.h"
@@ -7,17 +7,17 @@
 
 namespace shvr::ui {
 
-/// Writes all of `patch` except sequence, time and settings.
+/// Writes everything in `patch` except its sequence number, time and settings.
 void put_bits(const RelevancePlace& place, const RelevanceBits& bits, RelevancePatch& patch);
 void put_mirrored(const MirroredRelevance& mirrored, RelevancePatch& patch);
 
-/// Returns which voxels the session lets a hand feel: voxels in its felt groups, except those that the session's
-/// picture does not show, unless hidden voxels are felt too.
+/// Returns which voxels the hand may feel: those in the session's felt groups that the picture shows. If the session
+/// lets the hand feel hidden voxels, they need not be shown.
 FeltLimits felt_limits(const Session& session, const Camera& camera, const VolumeInfo& volume,
                        const IntensityWindow& window);
 
-/// Computes the relevance around a probe as the window's mirror does. `source` includes density offsets already; `mask`
-/// may be null if the limits do not need it, or if nothing is painted.
+/// Computes the relevance around a probe, as the window's mirror does. `source` must include density offsets. `mask`
+/// may be null if the limits do not depend on it or if nothing is painted.
 void host_relevance(const VolumeSource& source, const Mask* mask, const FeltLimits& limits, const RegionWish& wish,
                     double threshold, RelevancePatch& patch);
 

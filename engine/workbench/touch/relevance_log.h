@@ -1,6 +1,6 @@
 #pragma once
-// Records the relevance passed to a servo: the mirror's thread adds entries, and the main thread takes them. The servo
-// itself reports only the sequence in use, so it neither copies bits nor waits for a lock.
+// Records the relevance that was passed to a servo: the mirror's thread adds entries, the main thread takes them. The
+// servo itself reports only the sequence number in use, so it neither copies bits nor waits for a lock.
 
 #include <deque>
 #include <memory>
@@ -13,15 +13,15 @@ namespace shvr::ui {
 
 class RelevanceLog {
 public:
-    /// Maximum number of waiting entries; later ones are dropped. Eight seconds if every mirror iteration adds one.
+    /// Maximum number of entries waiting to be taken; further ones are dropped. Lasts for eight seconds of the mirror.
     static constexpr size_t MAX_ENTRIES = 1024;
 
     /// Main thread, before and after a recording
     void begin();
     void end();
-    /// Call before `patch` is published, on the publisher's thread. A sequence is recorded only once.
+    /// Call this before publishing `patch`, on the same thread. Each sequence number is recorded only once.
     void note(const RelevancePatch& patch);
-    /// Returns the next entry that is no newer than `sequence`. Main thread.
+    /// Returns the oldest entry whose sequence number is at most `sequence`; null if there is none. Main thread.
     std::optional<TraceRelevance> take(uint64_t sequence);
 
 private:

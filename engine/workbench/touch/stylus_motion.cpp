@@ -30,7 +30,7 @@ Workspace workspace_in_view(const Camera& camera, double view_height, double sca
 
 Camera camera_of_grab(const Grab& grab, const glm::dvec3& position_m, const glm::dquat& rotation, double units_per_m)
 {
-    // The motion: a point at v in the view moves to turn * (v - before) + after.
+    // Since the grab, a point v of the volume, in view coordinates, has moved to turn * (v - before) + after.
     const glm::dmat3 turn = glm::mat3_cast(glm::normalize(rotation) * glm::inverse(glm::normalize(grab.rotation)));
     const glm::dvec3 before = units_per_m * grab.position_m, after = units_per_m * position_m;
     const glm::dmat3 was = frame_of(grab.camera), is = was * glm::transpose(turn);
@@ -49,7 +49,7 @@ PlaneHold plane_of(TouchPlane plane, const glm::dvec3& point, const Workspace& w
     if (!hold.is_on) return hold;
     glm::dvec3 across(0.0);
     across[axis_of(plane)] = 1.0;
-    // The workspace is a rotation times a scale.
+    // The matrix to_volume is a rotation times a scale, so its transpose maps normals to the device's frame.
     hold.normal = glm::normalize(glm::transpose(workspace.to_volume) * across);
     hold.point_m = glm::inverse(workspace.to_volume) * (point - workspace.origin);
     return hold;

@@ -1,6 +1,6 @@
 #pragma once
-// Replays a recorded stylus with the present guidance, through the servo's own step, without a device or a clock:
-// the same recording, volume and settings give the same path, bit for bit. One thread; reads the volume's file.
+// Replays a recorded stylus with the present guidance, in the servo's own code, without a device or a clock: the same
+// recording, volume and settings give the same path, bit for bit. One thread. Reads the volume's file.
 
 #include <vector>
 
@@ -19,18 +19,18 @@ struct GuideSettings {
     double threshold = 0.0;     ///< intensity
     double probe_radius = 1.0;  ///< physical units
     FeelSettings feel;
-    FeltLimits limits;  ///< which voxels at or above the threshold are felt
+    FeltLimits limits;  ///< which of the voxels at or above the threshold can be felt
 };
 GuideSettings guide_settings(const Session& session, double probe_radius, FeltLimits limits);
 
 struct StylusPoint {
-    glm::dvec3 probe{0.0}, middle{0.0};  ///< physical units; equal if there is no contact or `at_proxy` is off
+    glm::dvec3 probe{0.0}, middle{0.0};  ///< physical units; they differ only in contact and if `at_proxy` is on
     bool in_contact = false;
     double relevant_share = 0.0;
     bool is_pressed = false;  ///< state of the first button
 };
-/// Recordings by older versions feel hidden voxels, too, as when recorded. `by_hand`: a modelled hand and stylus are
-/// pulled along the recording; otherwise the probe follows it. `source` includes density offsets already.
+/// Returns the probe's path. `by_hand`: the recording pulls a simulated hand and stylus; if false, the probe follows
+/// the recording. `source` must include offsets. Recordings of older versions feel hidden voxels, as they did then.
 std::vector<StylusPoint> play_stylus(const Trace& trace, const GuideSettings& guide, bool by_hand,
                                      std::shared_ptr<const VolumeSource> source, const Mask& mask);
 

@@ -10,7 +10,7 @@ StylusRecorder::StylusRecorder(std::filesystem::path path, std::string unit, uin
     trace_.unit = std::move(unit);
     trace_.holds_relevance = true;
     trace_.feels_seen = true;
-    trace_.settings.emplace_back();  // settings of a servo that has not received any
+    trace_.settings.emplace_back();  // the defaults, which a servo uses until it receives settings
 }
 
 void StylusRecorder::advance(TapLink& link)
@@ -39,11 +39,11 @@ void StylusRecorder::swap_device()
     if (trace_.ticks.empty()) return;
     const size_t tick = trace_.ticks.size();
     if (trace_.swaps.empty() || trace_.swaps.back() != tick) trace_.swaps.push_back(tick);
-    trace_.settings.emplace_back().from_tick = tick;  // settings of a servo that has not received any
+    trace_.settings.emplace_back().from_tick = tick;  // the new servo uses defaults until it receives settings
     relevance_ = 0;
 }
 
-/// Also keeps entries that the servo skipped, since later entries refer to them.
+/// Adds the relevance in use. Also adds entries that the servo skipped, since later entries refer to them.
 void StylusRecorder::add_relevance(RelevanceLog& log)
 {
     if (tick_.relevance == relevance_) return;
@@ -67,7 +67,7 @@ void StylusRecorder::add_caps()
 
 Trace StylusRecorder::take()
 {
-    const size_t ticks = trace_.ticks.size();  // swaps and settings of a device that never answered lie at or past this
+    const size_t ticks = trace_.ticks.size();  // drops swaps and settings of devices that answered in no tick
     std::erase_if(trace_.swaps, [&](size_t from) { return from >= ticks; });
     std::erase_if(trace_.settings, [&](const TraceSettings& settings) { return settings.from_tick >= ticks; });
     if (trace_.ticks.empty()) fail("the recording is empty; expected a device that moves the probe");

@@ -1,5 +1,5 @@
 #pragma once
-// Collects a device tap's records into a stylus trace (haptics/replay). Main thread.
+// Collects the records of a device tap into a stylus recording (haptics/replay). Main thread.
 
 #include <filesystem>
 #include <optional>
@@ -11,18 +11,18 @@ namespace shvr::ui {
 
 class StylusRecorder {
 public:
-    /// `unit`: unit of the volume's lengths. `number`: number of the recording, above 0, as in orders to the tap.
+    /// `unit`: unit of the volume's lengths. `number`: number of the recording, above 0, as in TapOrder::recording.
     StylusRecorder(std::filesystem::path path, std::string unit, uint32_t number);
-    /// Continues with the tap of another device and servo; fetch the remaining ticks of the former tap first.
+    /// Continues with the tap of another device and servo. Call this after fetching the old tap's remaining ticks.
     void swap_device();
     /// Fetches new ticks.
     void advance(TapLink& link);
     const std::filesystem::path& path() const { return path_; }
     uint32_t number() const { return number_; }
     double seconds() const { return double(trace_.ticks.size()) / trace_.rate_hz; }
-    /// Returns why the recording cannot continue; empty if it can.
+    /// Returns why the recording has to end; empty if it can continue.
     const std::string& end() const { return end_; }
-    /// Returns the trace. Fails if there is no tick.
+    /// Returns the recording. Fails if it has no tick.
     Trace take();
 
 private:

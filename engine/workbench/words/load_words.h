@@ -1,5 +1,5 @@
 #pragma once
-// What loading annotation would change, in numbers and words, before it does. Pure; any thread.
+// Describes in words and numbers what loading annotation is going to change. Pure; any thread.
 
 #include <span>
 
@@ -8,7 +8,7 @@
 
 namespace shvr::ui {
 
-/// `changes`: those of the part that turn `before` into `after` (changes_between). Leaves out path and notes.
+/// `changes`: the changes of `part` from `before` to `after` (changes_between). Does not fill in path and notes.
 LoadPreview preview_of(Part part, const shvr::Document& before, const shvr::Document& after,
                        std::span<const Change> changes);
 

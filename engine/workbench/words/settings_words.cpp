@@ -47,7 +47,7 @@ std::string sentence_about_solo(const Session& session)
                       : sentence("Only group ", int(*solo), " is drawn: ", group_of(session.groups, *solo).name);
 }
 
-/// Returns how far all points were moved, if that is the only change.
+/// Returns the distance by which all points were shifted, if nothing else was changed; otherwise null.
 std::optional<double> shift_between(const TransferFunction& was, const TransferFunction& is)
 {
     const auto before = was.points(), after = is.points();
@@ -68,7 +68,7 @@ std::string sentence_about(const TransferFunction& was, const TransferFunction& 
     return sentence("Transfer function of ", is.points().size(), " points, from ", is.lower(), " to ", is.upper());
 }
 
-/// Describes the mapping of arriving light to displayed light.
+/// Describes a change of the curve from arriving ambient light to displayed light.
 std::string sentence_about(const OcclusionSettings& was, const OcclusionSettings& is)
 {
     const auto &before = was.mapping, &after = is.mapping;
@@ -86,7 +86,7 @@ std::string sentence_about(const OcclusionSettings& was, const OcclusionSettings
                     " of the light arrives, ", percent(moved->seen), " is seen", off);
 }
 
-/// Returns an empty text if only numbers changed, which need no sentence of their own.
+/// Describes a change of the settings of touch. Returns an empty text if only numbers changed: they need no words.
 std::string sentence_about(const FeelSettings& was, const FeelSettings& is)
 {
     if (was.mode != is.mode) return words_of(is.mode).sentence;

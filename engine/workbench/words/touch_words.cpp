@@ -7,14 +7,14 @@ namespace shvr::ui {
 
 namespace {
 
-/// Returns whether an enumeration has a name for the value. A compiler spells a value without a name as a cast.
+/// Whether VALUE is an enumerator: the compiler prints a value without an enumerator as a cast, "(Type)3".
 template <auto VALUE>
 consteval bool is_named()
 {
     return std::string_view(__PRETTY_FUNCTION__).find("VALUE = (") == std::string_view::npos;
 }
 
-/// Returns whether a table spells each value of its enumeration, in order.
+/// Returns whether a table spells all values of its enumeration, in their order.
 template <const auto& SPELLINGS>
 consteval bool spells_all()
 {

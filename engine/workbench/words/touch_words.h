@@ -1,5 +1,5 @@
 #pragma once
-// Names, hints and messages of the modes of touch, the laws of guidance and the planes that hold the probe. Pure; any
+// Names, hints and messages for the modes of touch, the laws of guidance, and the planes that hold the probe. Pure; any
 // thread.
 
 #include "engine/session/session.h"
@@ -9,7 +9,7 @@ namespace shvr::ui {
 struct TouchWords {
     const char* name = "";      ///< on a button
     const char* hint = "";      ///< what the choice does
-    const char* sentence = "";  ///< the status bar's message after the choice
+    const char* sentence = "";  ///< message in the status bar after the user has chosen the value
 };
 TouchWords words_of(TouchMode mode);
 TouchWords words_of(ProxyLaw law);

@@ -9,7 +9,7 @@
 
 namespace shvr::ui {
 
-/// What a job reads, as it was when the action came.
+/// A copy of the data that a job reads, made when the action arrived, so that later changes do not matter.
 struct GroupEditor::Snapshot {
     Mask mask;
     TraceGraph trace;

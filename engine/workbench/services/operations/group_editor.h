@@ -1,6 +1,6 @@
 #pragma once
-// Operations on whole groups (engine/annotation/operations): computed as jobs on a copy of the mask, and made one step
-// of the history when they are done. If groups were painted meanwhile, the result no longer fits and is dropped.
+// Operations on whole groups (engine/annotation/operations): a job computes each on a copy of the mask, and its result
+// becomes one step of the history. If groups were painted meanwhile, the result no longer fits and is dropped.
 
 #include "engine/annotation/operations/run_operation.h"
 #include "engine/workbench/desk/service.h"
@@ -20,8 +20,8 @@ public:
     template <class Operation>
     requires IS_GROUP_OPERATION<Operation>
     void act(const Operation& operation) { begin(GroupOperation(operation)); }
-    /// Waits for the operation that was begun last. Fails with the reason if it did not become a step. `progress` may
-    /// throw, which cancels the operation.
+    /// Waits for the operation that began last. Fails with the reason if its result did not become a step. An exception
+    /// from `progress` cancels the operation.
     const OperationResult& finish(const Progress& progress);
 
 private:
