@@ -8,7 +8,7 @@ SHARED_BEGIN
 struct EncodeParams {
     uvec2 target;        ///< first texel to write
     uvec2 size;          ///< texels to write
-    vec2 first;          ///< centre of the first texel, in the source; texel i has its centre at i + 0.5
+    vec2 first;          ///< centre of the first texel, in source texels; texel i has its centre at i + 0.5
     vec2 step;           ///< source texels per target texel
     uvec2 last;          ///< last valid texel of the source; nothing was drawn beyond it
     vec3 behind;         ///< linear light behind a translucent background

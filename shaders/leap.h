@@ -1,8 +1,8 @@
 // The leap grid: for every cell of 4^3 voxels, how far a ray may jump, whether it is painted, and which brick holds it.
 //
 // An entry is (distance << 25) | (painted << 24) | slot. Painted: a voxel of the cell (or, with smooth borders, next to
-// it) is in a group; samples in unpainted cells need not read the mask. Distance 0: something visible may be in the
-// cell. Distance D > 0: every cell within Chebyshev distance D - 1 is empty, so a ray may leave the cube of 2 D - 1
+// the cell) is in a group; samples in unpainted cells need not read the mask. Distance 0: something visible may be in
+// the cell. Distance D > 0: every cell within Chebyshev distance D - 1 is empty, so a ray may leave the cube of 2 D - 1
 // cells around the cell without sampling.
 #ifndef SHVR_LEAP_H
 #define SHVR_LEAP_H
@@ -13,11 +13,11 @@ SHARED_BEGIN
 SHARED_CONST uint LEAP_SLOT_MASK = 0x00ffffffu;
 SHARED_CONST uint LEAP_PAINTED = 1u << 24u;
 SHARED_CONST uint LEAP_DISTANCE_SHIFT = 25u;
-/// Largest distance searched: a jump of 15 cells crosses 60 voxels.
+/// Maximum distance searched: a leap of 15 cells crosses 60 voxels.
 SHARED_CONST uint LEAP_LIMIT = 15u;
 
-/// Tolerance in codes by which a sample may exceed the range of its cell, so that pictures with and without skipping
-/// are equal, bit for bit. Exact sampling is a few ulp off; a device's filter may round its result by a code.
+/// Tolerance, in codes, by which a sample may exceed its cell's range. It makes pictures with and without skipping
+/// equal, bit for bit. Exact sampling is a few ulp off; a device's filter may be off by a code.
 SHARED_CONST float GUARD_EXACT = 0.02f;
 SHARED_CONST float GUARD_FILTERED = 1.5f;
 
@@ -33,7 +33,7 @@ struct OccupancyParams {
     float guard;          ///< GUARD_EXACT or GUARD_FILTERED
     uint skipping;        ///< 0: every cell counts as occupied
     uint empty_distance;  ///< distance for cells that are not occupied
-    uint paint_reach;     ///< distance in voxels, 0 or 1, at which a painted voxel's group may be visible
+    uint paint_reach;     ///< distance in voxels (0 or 1) up to which the group of a painted voxel may be visible
 };
 
 struct LeapBoundParams {
@@ -45,17 +45,17 @@ struct LeapBoundParams {
 
 SHARED_CONST uint SAMPLE_BITS_AHEAD = 24u;
 SHARED_CONST uint SAMPLE_BIT_PARTS = 32768u;
-/// Maximum voxels along z with sample bits, so that positions in parts fit in 31 bits; along y, four times as many.
+/// Maximum voxels along z if sample bits are used: scaled positions must fit in 31 bits. Along y, four times as many.
 SHARED_CONST uint SAMPLE_BITS_SIZE = 4095u;
 SHARED_CONST float SAMPLE_BITS_REACH = 4.0f;
 
-/// Sample bits tell whether a sample may show anything, judging by the eight voxels around it. A sample's bit is that
-/// of the upper voxel, floor(position - 0.5) + 1, at most the volume's last one. A cell has two texels of two planes
-/// along z each: bit x + 4 y + 16 z.
+/// A sample bit is set if a sample may show anything, given the eight voxels around the sample. A sample uses the bit
+/// of the upper of these voxels, floor(position - 0.5) + 1, at most the volume's last voxel. A cell has two texels,
+/// with two planes along z each: bit x + 4 y + 16 z.
 ///
 /// Rays find the places of SAMPLE_BITS_AHEAD samples in fixed point: SAMPLE_BIT_PARTS parts of a voxel along x, four
 /// times as many along y and sixteen times along z. The rounding to parts, plus the error of a sample's own
-/// coordinates, may therefore assign it to a neighbouring voxel. The bits allow for that on rays whose ends are at most
+/// coordinates, may assign the sample to a neighbouring voxel. The bits allow for this on rays whose ends are at most
 /// SAMPLE_BITS_REACH times the volume's longest side apart, along each axis; other rays do not use the bits.
 struct SampleBitsParams {
     uvec3 cell_begin;  ///< the cells to compute

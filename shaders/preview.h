@@ -1,5 +1,5 @@
-// The voxels that a brush would change, as rays hit them. Positions are in voxels relative to the box around those
-// voxels, computed in double on the CPU, so that they stay accurate far from the volume's first corner.
+// The voxels that a brush would change, as rays hit them. Positions are in voxels, relative to the box around these
+// voxels, and computed in double on the CPU, so that they stay accurate far from the volume's first corner.
 #ifndef SHVR_PREVIEW_H
 #define SHVR_PREVIEW_H
 #include "shared.h"
@@ -15,10 +15,10 @@ struct PreviewParams {
     vec3 far_dy;
     ivec3 size;          ///< voxels of the box
     uint words_per_row;  ///< bit b of word w is x = 32 w + b
-    vec3 lower;          ///< position of the box's first corner in the volume, voxels
+    vec3 lower;          ///< position of the box's first corner in the volume, in voxels
     vec3 color;          ///< linear light
-    uint is_striped;     ///< marks voxels that would be erased: stripes differ from any colour, even without colour
-                         ///< vision
+    uint is_striped;     ///< marks voxels that would be erased: stripes differ from any colour, even for the
+                         ///< colour-blind
 };
 
 struct PreviewOverParams {

@@ -8,22 +8,22 @@ SHARED_BEGIN
 /// The transfer function's table is an image in rows of TABLE_WIDTH texels: first its entries (preintegrated:
 /// TABLE_WIDTH x TABLE_WIDTH, front density along x), padded to whole rows. From texel `table_depths` on, it has the
 /// optical depths of a full step, OPAQUE_DEPTH if the step is opaque: opacity alone would round to 1, and the opacity
-/// of a part of such a step would be unknown. A texel has the depths of four successive entries; preintegrated: one
-/// texel per entry, with the depths of the entry, its neighbours along x and y, and the diagonal one.
+/// of a part of such a step would be unknown. A texel has the depths of four successive entries. Preintegrated: one
+/// texel per entry, with the depths of the entry and of its neighbours along x, y and both.
 SHARED_CONST uint TABLE_WIDTH = 256u;
 SHARED_CONST float OPAQUE_DEPTH = 1e30f;
 
-/// From texel `opaque_map` on, the table tells where a preintegrated function reaches opacity 1: OPAQUE_ENTRIES texels
-/// over its range, whose x is the first opaque interval that ends at or above the texel, and y the last one that begins
-/// at or below the next texel. Then come the intervals: colour and density at their beginnings and ends, two texels
-/// each. The first and the last interval are sentinels out of reach.
+/// From texel `opaque_map` on, the table shows where a preintegrated function reaches opacity 1: OPAQUE_ENTRIES texels
+/// over its range, in which x is the first opaque interval that ends at or above the texel, and y the last interval
+/// that begins at or below the next texel. The intervals follow: two texels each, with colour and density at the
+/// beginning and at the end. The first and the last interval are unreachable sentinels.
 SHARED_CONST uint OPAQUE_ENTRIES = 65536u;
 SHARED_CONST float OUT_OF_REACH = 1e30f;
 
-/// From texel `points` on, the table has, for integral.comp, the function's `point_count` points, sorted by density:
-/// colour and opacity of a reference length, one texel each; then their densities in codes, one texel each.
+/// From texel `points` on, the table has the function's `point_count` points for integral.comp, sorted by density:
+/// first a texel each with colour and opacity of a reference length, then a texel each with the density in codes.
 
-/// The specialization constant SHININESS_SQUARINGS is log2 of the shininess if that is a whole number below this.
+/// The specialization constant SHININESS_SQUARINGS is log2 of the shininess if this is an integer below the constant.
 SHARED_CONST uint NOT_A_POWER_OF_TWO = 10u;
 
 /// The specialization constant SHELL: no iso-surface, or the shape of its region.
@@ -31,27 +31,27 @@ SHARED_CONST uint SHELL_NONE = 0u;
 SHARED_CONST uint SHELL_BALL = 1u;
 SHARED_CONST uint SHELL_BOX = 2u;
 
-/// The specialization constant PICK: the target's first row receives the answer; between blocks the other rows hold the
-/// state of the runs so far. A rise below MIN_SEEN does not count as visible.
+/// The specialization constant PICK: the target's first row receives the answer; between blocks, the other rows hold
+/// the state of the runs. A rise below MIN_SEEN does not count as visible.
 SHARED_CONST uint PICK_ROWS = 3u;
 SHARED_CONST float MIN_SEEN = 0.015625f;
 
-/// The specialization constant KEPT: the values that a ray stores in the image `rays` between two dispatches, besides
-/// the colour accumulated in its pixel. x: length of the ray up to the next iso-surface; y: length from which the
-/// search continues (negative before the region). KEPT_ALL, for rays that each wait for bricks at their own position,
-/// adds z, w: the next step, in two halves of 16 bits, with RAY_* times 65536 added to w. The image then has a second
-/// half below this one, for the accumulated colour, and every dispatch writes the pixels themselves fully composited.
+/// The specialization constant KEPT: the values that a ray stores in the image `rays` between two dispatches, in
+/// addition to the colour accumulated in its pixel. x: length of the ray up to the next iso-surface; y: length from
+/// which the search continues (negative before the region). KEPT_ALL, for rays that each wait for bricks at their own
+/// position, adds z, w: the next step, in two halves of 16 bits, with RAY_* times 65536 added to w. The image then has
+/// a second half, below the first, for the accumulated colour, and every dispatch writes fully composited pixels.
 SHARED_CONST uint KEPT_NOTHING = 0u;
 SHARED_CONST uint KEPT_SHELL = 1u;
 SHARED_CONST uint KEPT_ALL = 2u;
 SHARED_CONST uint RAY_IS_INSIDE = 1u;  // the iso-surface
 SHARED_CONST uint RAY_IS_DONE = 2u;
 
-/// Samples whose density is read per iteration of the search for a visible one (library/search.glsl).
+/// Number of samples per iteration whose density is read to find a visible sample (library/search.glsl).
 SHARED_CONST uint SEARCH_AHEAD = 4u;
 
 struct RaycastParams {
-    // The ray of a pixel joins two points on planes close to the volume, computed in double on the CPU; voxel space.
+    // The ray of a pixel joins two points on planes near the volume, in voxel space; computed in double on the CPU.
     vec3 near_corner;
     vec3 near_dx;
     vec3 near_dy;
@@ -61,14 +61,14 @@ struct RaycastParams {
     uvec2 pixel_begin;  ///< the part of the picture to draw
     uvec2 pixel_end;
     uvec2 target;       ///< texel of pixel_begin
-    uvec2 drawn_begin;  ///< pixels of the part that this dispatch draws, relative to pixel_begin; set by raycast()
+    uvec2 drawn_begin;  ///< pixels of the part drawn by this dispatch, relative to pixel_begin; set by raycast()
     uvec2 drawn_end;
     vec3 box_lower;  ///< the drawn part of the volume, voxel space
     vec3 box_upper;
-    vec3 position_limit;  ///< an ulp before the volume's end: samples in its upper faces belong to the last voxel
+    vec3 position_limit;  ///< one ulp below the volume's end, so samples in its upper faces get the last voxel
     vec3 spacing;         ///< reference lengths per voxel
     vec3 inverse_spacing;
-    uvec3 page_counts;    ///< size of the directory's grid in cells, see pages.h
+    uvec3 page_counts;    ///< size of the directory's grid, in cells (pages.h)
     uint page_shift;      ///< log2 of a grid cell's side in voxels
     uint page_depth;      ///< depth of the directory's nodes
     float step;           ///< reference lengths
@@ -78,9 +78,9 @@ struct RaycastParams {
     float table_scale;    ///< table coordinate = (code - table_lower) * table_scale
     uint table_entries;
     uint table_depths;   ///< texel of the table where depths begin
-    uint opaque_map;     ///< texel of the table where the opaque map begins; 0: there is none
+    uint opaque_map;     ///< texel of the table where the opaque map begins; 0: no map
     float opaque_scale;  ///< texel of the opaque map = (code - table_lower) * opaque_scale
-    uint first_step;     ///< first step of this dispatch's block, for every ray; 0: rays begin
+    uint first_step;     ///< first step of this dispatch's block, for all rays; 0: start of rays
     uint end_step;       ///< KEPT_ALL: only the number of steps matters
     uint is_last_block;
     vec4 background;  ///< linear light, straight alpha
@@ -90,19 +90,19 @@ struct RaycastParams {
     float specular;
     float shininess;
     float gradient_fade;  ///< codes per reference length
-    vec4 depth_plane;     ///< dot(xyz, voxel) + w: 0 at the start of the drawn box along the view, 1 at its end
+    vec4 depth_plane;     ///< dot(xyz, voxel) + w is 0 where the drawn box starts along the view, and 1 at its end
     vec3 blend_color;     ///< linear light
-    float blend_size;     ///< distance blending: share of the colour at depth 1
+    float blend_size;     ///< distance blending: share of the blend colour at depth 1
     float blend_rate;     ///< growth of that share with depth: depth^rate
     float slice_black;    ///< slices: the code drawn black
     float slice_scale;    ///< 1 / (codes from black to white)
     float slice_paint;    ///< share of a painted voxel's colour that comes from its group
-    vec3 shell_center;    ///< voxel space; centre of the region with an iso-surface
-    vec3 shell_reach;     ///< half the size of the box, or the ball's radius along each axis; voxels
+    vec3 shell_center;    ///< voxel space; centre of the iso-surface's region
+    vec3 shell_reach;     ///< half the size of the box, or radius of the ball along each axis; voxels
     float shell_code;     ///< threshold of the surface
     vec3 shell_color;     ///< linear light
     float shell_opacity;  ///< opacity of one crossing of the surface
-    uint points;          ///< texel of the table where the points begin
+    uint points;          ///< texel of the table where the function's points begin
     uint point_count;     ///< integral.comp only
 };
 

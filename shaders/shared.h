@@ -1,5 +1,5 @@
-// Makes one header valid in GLSL and in C++. Shared headers hold constants, parameter structs (scalar block layout, so
-// that a vec3 takes 12 bytes in both languages) and pure functions on them.
+// Makes one header valid in GLSL and in C++. Shared headers contain constants, parameter structs (in scalar block
+// layout, so that a vec3 takes 12 bytes in both languages) and pure functions.
 #ifndef SHVR_SHARED_H
 #define SHVR_SHARED_H
 

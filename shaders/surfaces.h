@@ -1,36 +1,36 @@
 // Opaque surfaces: balls and rods that end rays; intersections are exact. Lengths and positions are in isotropic space:
-// physical positions divided by the reference length, a voxel's finest axis.
+// physical positions divided by the reference length, the shortest side of a voxel.
 #ifndef SHVR_SURFACES_H
 #define SHVR_SURFACES_H
 #include "shared.h"
 
 SHARED_BEGIN
 
-/// The convex hull of two balls (a round cone), or one ball if `along` is 0. The first ball is at `from` + `from_rest`:
-/// the rest holds the digits that a float loses in a large volume. Stored as four texels of four words each.
+/// The convex hull of two balls (a round cone), or one ball if `along` is 0. The first ball is at `from` + `from_rest`,
+/// where `from_rest` has the digits that a float loses in a large volume. Stored as four texels of four words.
 struct Surface {
     vec3 from;
     float radius_from;
     vec3 along;       ///< from the first ball to the second
     float radius_to;  ///< radius of the second ball; neither ball contains the other
     vec3 from_rest;
-    uint number;  ///< tie-breaker: if two surfaces are at the same length, the lower number is visible
+    uint number;  ///< tie-breaker: of two surfaces at equal length, the lower number is visible
     vec3 color;   ///< linear light
     uint unused;
 };
 
-/// A box around surfaces. Nodes are in depth-first order: after a node comes its first child, or node `skip` if it has
-/// no child. Stored as three texels of four words each.
+/// A box around surfaces. Nodes are in depth-first order: a node is followed by its first child or, if it has no child,
+/// by node `skip`. Stored as three texels of four words.
 struct SurfaceNode {
     vec3 lower;
-    uint skip;  ///< index of the next node that is not inside this one
+    uint skip;  ///< index of the next node that is not inside this node
     vec3 upper;
     uint begin;  ///< range of a leaf's surfaces; begin == end in other nodes
     uint end;
     uvec3 unused;
 };
 
-/// Maximum number of surfaces in a leaf. A smaller one means more boxes to load, a larger one more rods to intersect.
+/// Maximum surfaces in a leaf. Smaller leaves mean more boxes to load, larger leaves more rods to intersect.
 SHARED_CONST uint SURFACES_IN_LEAF = 4u;
 
 /// Surfaces and nodes are stored in images, in rows of this length: devices without a cache for buffers read buffers
@@ -40,8 +40,8 @@ SHARED_CONST uint SURFACE_TEXELS = 4u;
 SHARED_CONST uint SURFACE_NODE_TEXELS = 3u;
 
 /// The ray of a pixel passes through a point of the middle plane, in the direction from a point of the near plane to a
-/// point of the far plane. Points are relative to the centre of the middle plane, at which the user looks, so that
-/// points there stay accurate even if the volume is large and the eye is far.
+/// point of the far plane. Points are relative to the centre of the middle plane, at which the user looks, so points
+/// near it stay accurate even if the volume is large and the eye is far.
 struct SurfaceParams {
     vec3 origin;  ///< origin of all other positions: origin + origin_rest
     vec3 origin_rest;
@@ -51,15 +51,15 @@ struct SurfaceParams {
     vec3 along_corner;  ///< vector from the near plane to the far plane
     vec3 along_dx;
     vec3 along_dy;
-    float begin;   ///< start of the clip range, between the near plane (0) and the far one (1)
+    float begin;   ///< start of the clip range: 0 is the near plane, 1 the far plane
     float middle;  ///< position of the middle plane
     float end;     ///< end of the clip range
-    float slack;   ///< margin of boxes on each side, larger than the rounding error
+    float slack;   ///< margin added to boxes on each side, above the rounding error
     uint node_count;
     uint first_node;  ///< the block: the range of nodes that this dispatch visits
     uint end_node;
     uint is_last_block;
-    vec3 probe_center;  ///< position relative to the origin; the probe is one more ball
+    vec3 probe_center;  ///< position relative to the origin; the probe is an additional ball
     float probe_radius;
     vec3 probe_color;  ///< linear light
 };
@@ -83,13 +83,13 @@ SHARED_FUNCTION uint surface_block(uvec2 in_part)
     return SURFACE_BLOCK + in_part.x / 4u % 2u + 2u * (in_part.y / 2u % 4u);
 }
 
-/// Returns the texel of a word in a tile's list; word 0 is the number of surfaces in the list.
+/// Returns the texel of a word in a tile's list; word 0 is the number of listed surfaces.
 SHARED_FUNCTION uvec2 surface_tile_texel(uvec2 tile, uint word)
 {
     return SURFACE_TILE * tile + uvec2(word % SURFACE_TILE, word / SURFACE_TILE);
 }
 
-/// Stands for the length along a ray that meets no surface.
+/// Length along a ray that meets no surface.
 SHARED_CONST float NO_SURFACE = 1e30f;
 
 SHARED_END

@@ -32,14 +32,14 @@ shared uint distances[2][BRICK_CELLS * BRICK_CELLS * BRICK_CELLS];
 CellPaint paint_of(const BrickLeapJob job, uvec3 cell)
 {
     if (job.mask_slot == 0u) return CellPaint(false, false);
-    // A coarse cell has too many voxels to examine: if any voxel of its brick is painted, the cell counts as painted.
+    // A coarse cell has too many voxels to examine, so it counts as painted if any voxel of its brick is painted.
     if (job.level > 0u) return CellPaint(true, true);
     if (params.paint_reach > 0u) return paint_around(BRICK_CELLS * job.brick + cell, uvec3(0xffffffffu));
     return paint_in(job.mask_slot, cell);
 }
 #endif
 
-// One axis of the Chebyshev distance; cells outside the brick do not count.
+// One axis of the Chebyshev distance. Cells outside the brick are ignored.
 uint nearer(uint source, uint at, uint stride, uint position)
 {
     uint best = distances[source][at];

@@ -1,6 +1,6 @@
-// Copies bricks into their slots: one group per slice of a brick's codes; the first groups also copy the cells. Copy
-// commands would do the same, but some devices run a dispatch for each slice of each copy.
-// FILTERED: the atlas is the one for the device's filter. Otherwise staged codes have the layout of the atlas.
+// Copies bricks into their slots: one workgroup per slice of a brick's codes; the first groups also copy the cells.
+// Copy commands would do the same, but some drivers run a dispatch for each slice of each copy.
+// FILTERED: the atlas is made for the device's filter. Otherwise, staged codes have the atlas's own layout.
 // variants: FILTERED
 #version 460
 #extension GL_GOOGLE_include_directive : require

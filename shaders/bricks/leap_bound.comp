@@ -1,5 +1,5 @@
-// Patches an existing leap grid after cells changed: limits the leaps of the cells around them to the nearest changed
-// cell, as if all changed cells were occupied. Leaps become shorter than necessary, but never too long.
+// Updates a leap grid after cells have changed: limits the leaps of the cells around them to the nearest changed cell,
+// as if all changed cells were occupied. Leaps may become shorter than necessary, but never too long.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

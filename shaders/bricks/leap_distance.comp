@@ -1,4 +1,4 @@
-// One axis of the Chebyshev distance transform: the maximum norm is separable, so three of these passes are exact.
+// One axis of the Chebyshev distance transform. The maximum norm is separable, so three such passes are exact.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -21,7 +21,7 @@ void main()
     const uint entry = imageLoad(source, cell).x;
     uint best = entry >> LEAP_DISTANCE_SHIFT;
     for (uint k = 1u; k < best; ++k) {
-        // Nothing outside the volume is visible, so the nearest cell inside can be used instead: it is closer.
+        // Cells beyond the border are empty. Clamped reads repeat a nearer cell, which cannot change the result.
         const int below = max(-int(k), -position), above = min(int(k), count - 1 - position);
         const uint nearest = min(imageLoad(source, cell + below * along).x, imageLoad(source, cell + above * along).x);
         best = min(best, max(k, nearest >> LEAP_DISTANCE_SHIFT));

@@ -1,6 +1,6 @@
-// One cell per thread: sets its distance to 0 if anything in it is visible, otherwise to `empty_distance`.
-// MASKED: a cell is also occupied if a voxel in it or next to it is in a visible group; also records whether the cell
-// is painted.
+// One cell per thread: sets the cell's distance to 0 if anything in the cell is visible, else to `empty_distance`.
+// MASKED: a cell is also occupied if a voxel in or next to the cell is in a visible group; also records whether it is
+// painted.
 // variants: MASKED
 #version 460
 #extension GL_GOOGLE_include_directive : require

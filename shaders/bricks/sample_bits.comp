@@ -1,4 +1,4 @@
-// Finds where samples of the exact density may show something (leap.h, sample bits): one cell per thread. The bit of a
+// Finds where samples of the exact density may show something (sample bits, leap.h): one cell per thread. The bit of a
 // sample between eight voxel centres is set if at least one code there is not below the visible range, and at least one
 // is not above it. In a cell next to paint, all bits are set.
 #version 460
@@ -16,8 +16,8 @@ layout(binding = 2, r32ui) uniform writeonly uimage3D sample_bits;
 #include "../library/atlas.glsl"
 
 const uint ALL = 0xffffffffu;
-// Returns bits for five codes: the one before `x`, and the four from `x` on. A word begins at `x`. Bits 0 to 4: not
-// below the visible range; bits 8 to 12: not above it. Before the volume's first voxel, that voxel repeats.
+// Returns bits for five codes: the code before `x`, and four codes from `x` on, where `x` begins a word. Bits 0 to 4:
+// not below the visible range; bits 8 to 12: not above it. The volume's first voxel repeats before the row.
 uint sides_of_row(int x, int y, int z)
 {
     const int before = max(x - 1, 0), first_word = x >> WORD_SHIFT;
@@ -36,8 +36,8 @@ void main()
 {
     const uvec3 cell = params.cell_begin + gl_GlobalInvocationID;
     if (any(greaterThanEqual(cell, params.cell_end))) return;
-    // Samples between the centres of these voxels and the preceding ones are in up to eight cells. A sample assigned to
-    // a neighbouring voxel may be in any of the cells around.
+    // Samples between these voxels' centres and the preceding ones lie in up to eight cells, and a sample assigned to a
+    // neighbouring voxel may lie in any of the surrounding cells.
     const bool is_empty = imageLoad(leap, ivec3(cell)).x >> LEAP_DISTANCE_SHIFT > 1u;
     bool is_painted = false;
     [[unroll]] for (uint i = 0u; i < 8u && !is_empty; ++i) {
@@ -47,7 +47,7 @@ void main()
     uvec2 bits = uvec2(is_painted ? ALL : 0u);
     if (!is_empty && !is_painted) {
         const ivec3 first = place_of_first() + ivec3(CELL_SIZE * cell) - ivec3(0, 1, 1);
-        uint plane_before[4];   // four rows of bits, for two rows of voxels each
+        uint plane_before[4];   // four rows of bits, each covering two rows of voxels
         [[unroll]] for (int z = 0; z < 5; ++z) {
             uint plane[4];
             uint row_before = 0u;

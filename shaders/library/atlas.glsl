@@ -1,12 +1,12 @@
 // Reads texels of the density atlas. Needs bricks.h and `atlas`, an r32ui image or, if FILTERED, a sampler3D of
-// R16_UNORM codes. Codes have 16 bits. A texel of r32ui contains two codes along x, the first one in its low half. In
-// volumes of bytes (CODE_BYTES is 1), codes are multiples of 257 and a texel contains four.
+// R16_UNORM codes. Codes have 16 bits. A texel of r32ui contains two codes along x, the first in its low half. In 8-bit
+// volumes (CODE_BYTES is 1), codes are multiples of 257 and a texel contains four of them.
 //
-// Paged bricks lie in slots; bricks of a resident volume lie side by side (bricks.h).
+// Paged bricks are in slots; bricks of a resident volume are contiguous (bricks.h).
 //
-// STACKED: if one image of the device cannot hold enough paged bricks, there are several (ATLASES) of the same size,
-// stacked along z. Bindings of missing images get the first image, and are never read. A brick lies in one image,
-// together with all texels that its samples read.
+// STACKED: if one image cannot hold enough paged bricks, there are several images (ATLASES) of the same size, stacked
+// along z. Bindings without an image of their own get the first image, and are never read. A brick lies in a single
+// image, together with all texels that its samples read.
 #ifndef SHVR_ATLAS_GLSL
 #define SHVR_ATLAS_GLSL
 
@@ -14,12 +14,12 @@
 const uint CODE_BYTES = 2u;
 #else
 layout(constant_id = 15) const uint CODE_BYTES = 2u;
-const int WORD_SHIFT = CODE_BYTES == 1u ? 2 : 1;   // shift that converts a code's position along x to that of its word
+const int WORD_SHIFT = CODE_BYTES == 1u ? 2 : 1;   // shift that converts a code's x coordinate to that of its word
 const uint CODE_BITS = 8u * CODE_BYTES;
 const uint CODE_MASK = CODE_BYTES == 1u ? 0xffu : 0xffffu;
 const uint CODE_UNIT = CODE_BYTES == 1u ? 257u : 1u;
 
-// The shift that moves the code at x to the low bits of its word.
+// The right shift that moves the code at x to the low bits of its word.
 uint shift_to(int x)
 {
     return uint(x & (1 << WORD_SHIFT) - 1) * CODE_BITS;
@@ -38,20 +38,20 @@ layout(binding = STACKED + 1, r32ui) uniform readonly uimage3D atlas_2;
 layout(binding = STACKED + 2, r32ui) uniform readonly uimage3D atlas_3;
 #endif
 
-// The index of the image that contains z, if each image has the height `height`.
+// The index of the image that contains z, if each image is `height` texels high.
 int atlas_of(int z, int height)
 {
     return int(z >= height) + int(z >= 2 * height) + int(z >= 3 * height);
 }
 #endif
 
-// The position of the first voxel of a brick in a slot.
+// The position of a brick's first voxel in the atlas, given the brick's slot.
 ivec3 place_in_slot(uint slot)
 {
     return ivec3(slot_codes(CODE_BYTES) * unpack_slot(slot) + BRICK_APRON);
 }
 
-// The position of the first voxel of a volume whose bricks are side by side.
+// The position of the first voxel in an atlas of contiguous bricks.
 ivec3 place_of_first()
 {
     return ivec3(code_border());
@@ -87,7 +87,7 @@ uint atlas_word(ivec3 at)
 }
 #endif
 
-// The last position along x of a volume whose bricks are side by side.
+// The last position along x in an atlas of contiguous bricks.
 int last_along_x()
 {
 #ifdef FILTERED

@@ -9,7 +9,7 @@ vec3 blended(const RaycastParams params, vec3 color, vec3 position)
     return mix(color, params.blend_color, min(params.blend_size * grown, 1.0));
 }
 
-// Composites a ray's sum over the background, premultiplied.
+// Composites a ray's premultiplied sum over the background.
 vec4 over_background(const RaycastParams params, vec4 sum)
 {
     const float through = (1.0 - sum.a) * params.background.a;

@@ -23,8 +23,8 @@ CellPaint paint_in(uint mask_slot, uvec3 cell_of_brick)
     return CellPaint(groups != 0u, shown != 0u);
 }
 
-// The paint of the cell's voxels and of their neighbours, which may be in other bricks. `brick_counts`: size of the
-// volume in bricks.
+// The paint of a cell's voxels and of the voxels next to them, which may be in other bricks. `brick_counts`: size of
+// the volume in bricks.
 CellPaint paint_around(uvec3 cell, uvec3 brick_counts)
 {
     const uint side = CELL_SIZE + 2u;

@@ -1,4 +1,4 @@
-// Looks up a step, or a part of one, in the transfer function's table. Needs `table`, and PREINTEGRATED. The layout of
+// Looks up a step, or part of a step, in the transfer function's table. Needs `table` and PREINTEGRATED. The layout of
 // the table is in raycast.h.
 
 ivec2 table_texel(uint index)
@@ -6,7 +6,7 @@ ivec2 table_texel(uint index)
     return ivec2(index % TABLE_WIDTH, index / TABLE_WIDTH);
 }
 
-// 1 - exp(-depth). The plain form loses small opacities to cancellation; the series does not, and converges fast.
+// 1 - exp(-depth). For small depths, cancellation would lose precision, so a series is used; it converges fast.
 float opacity_of_depth(float depth)
 {
     const float series =
@@ -20,7 +20,7 @@ float table_depth(const RaycastParams params, uint entry)
     return imageLoad(table, table_texel(params.table_depths + entry / 4u))[entry % 4u];
 }
 
-// The place in the table for a density: between an entry and the next one.
+// The place of a density in the table: between an entry and the next entry.
 struct TablePlace {
     uint entry;
     float share;   // weight of the next one
@@ -35,7 +35,7 @@ TablePlace table_place(const RaycastParams params, float density)
     return TablePlace(entry, at - float(entry), density >= params.table_lower && density <= params.table_upper);
 }
 
-// Colour and opacity of a step for a density; both are linear between entries, and opacity is 0 outside.
+// Colour and opacity of a step for a density. Interpolates linearly between entries; opacity is 0 outside the table.
 vec4 classify(const RaycastParams params, float density)
 {
     const TablePlace place = table_place(params, density);
@@ -54,8 +54,8 @@ float opacity_of_part(const RaycastParams params, float density, float part)
     return place.is_inside ? opacity : 0.0;
 }
 
-// Colour and opacity of the fraction `part` of a step, for a density that changes from `front` to `back`. Both are axes
-// of the table; the part of the step outside the function's range is empty.
+// Colour and opacity of the fraction `part` of a step along which the density changes from `front` to `back`. These two
+// densities are the table's axes. The part of the step outside the function's range is empty.
 vec4 classify_change(const RaycastParams params, float front, float back, float part)
 {
     const vec2 ends = clamp(vec2(front, back), params.table_lower, params.table_upper);
@@ -77,7 +77,7 @@ vec4 classify_change(const RaycastParams params, float front, float back, float 
     return vec4(sum.rgb / max(sum.a, 1e-30), opacity);
 }
 
-// An interval of opaque densities, at which rays end, with its lower and upper ends.
+// An interval of opaque densities, at which rays end: its lower and upper end.
 struct Opaque {
     vec4 lower, upper;   // colour, density
 };
@@ -88,7 +88,7 @@ Opaque opaque_interval(const RaycastParams params, uint number)
     return Opaque(imageLoad(table, table_texel(at)), imageLoad(table, table_texel(at + 1u)));
 }
 
-// The interval that a density meets first on its way from `front` to `back`; an unreachable one if it meets none.
+// The interval that a density reaches first between `front` and `back`; an unreachable interval if there is none.
 Opaque opaque_ahead(const RaycastParams params, float front, float back)
 {
     const float at = clamp((front - params.table_lower) * params.opaque_scale, 0.0, float(OPAQUE_ENTRIES - 1u));
@@ -101,11 +101,11 @@ Opaque opaque_ahead(const RaycastParams params, float front, float back)
     return opaque_interval(params, rises ? number + 1u : number - 1u);
 }
 
-// Like classify_change, but a step that meets an opaque density shows the part in front of it, then the opaque colour.
+// Like classify_change, but a step that reaches an opaque density shows the part before it, then the opaque colour.
 vec4 classify_step(const RaycastParams params, float front, float back, float part)
 {
     if (PREINTEGRATED < 2u) return classify_change(params, front, back, part);
-    // The back of a step and the front of the next one are the same point; rounding may leave a gap of this size.
+    // The back of a step and the front of the next are the same point, but rounding may leave a gap of this size.
     const float gap = 0.004;   // codes
     const Opaque ahead = opaque_ahead(params, front, back);
     const float lower = min(front, back) - gap, upper = max(front, back) + gap;

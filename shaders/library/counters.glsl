@@ -1,6 +1,6 @@
-// Counters, 64 bits wide on devices without 64-bit atomics: a carry is added when the low half wraps. Each group counts
-// in its own row while there are enough rows, since atomic additions to one address are serialized; the host adds up
-// the rows.
+// Counters with 64 bits on devices without 64-bit atomics: a carry is added when the low half wraps around. Each
+// workgroup counts in its own row as long as there are enough rows, since atomic additions to one address are
+// serialized. The host adds up the rows.
 #include "../counters.h"
 
 layout(binding = 15, scalar) buffer Counters { uvec2 values[]; } counters;

@@ -1,14 +1,14 @@
 // Exact sampling of the density: trilinear values, and central differences of +-0.5 voxel, by arithmetic on 16-bit
-// codes. Needs `atlas`, r32ui, with two or four neighbouring codes along x in a texel (atlas.glsl); and the counter
-// `density_reads`. Several codes in one load make this the fastest way on devices whose images are ordinary memory
-// (engine/bricks/README.md).
+// codes. Needs `atlas`, r32ui, with two or four neighbouring codes along x in a texel (atlas.glsl), and the counter
+// `density_reads`. As one load reads several codes, this is the fastest method on devices whose images are ordinary
+// memory (engine/bricks/README.md).
 //
 // A sample touches the eight codes around it and, for the gradient, one more row on the nearer side of each axis. All
-// these codes lie side by side, or within the brick's apron, so no second lookup is ever needed.
+// these codes are contiguous or within the brick's apron, so one brick lookup always suffices.
 #include "atlas.glsl"
 
-// Three neighbouring codes along x: the words that hold the first and the last of them, and the shifts that extract
-// them.
+// Three neighbouring codes along x: the words that contain the first and the last code, and the shifts that extract the
+// codes.
 struct Row {
     int first_word, last_word;
     uvec3 shifts;
@@ -18,9 +18,9 @@ struct Row {
 struct Density {
     ivec3 corner;      // lower corner, in codes
     vec3 fraction;
-    Row row;           // row that begins at the corner, or at the code before it
+    Row row;           // row that begins at the corner or one code before it
     float v[8];        // codes at the corners, x fastest
-    float beyond[4];   // the next code along x on the nearer side, in the rows (y, z) = 00, 10, 01, 11
+    float beyond[4];   // the next code along x, on the nearer side, in the rows (y, z) = 00, 10, 01, 11
 };
 
 Row row_from(int x)
@@ -67,7 +67,7 @@ Density density_at(ivec3 corner, vec3 fraction)
     return d;
 }
 
-// The codes at the corner's x, and at the next x, in another row.
+// In another row: the codes at the corner's x and at the next x.
 vec2 pair_in(const Density d, int y, int z)
 {
     const vec3 codes = codes_of(d.row, y, z);
@@ -81,7 +81,7 @@ float bilinear(float a, float b, float c, float d, float x, float y)
     return low + (high - low) * y;
 }
 
-/// A 16-bit code, with a fraction. Between equal codes it is exactly that code, so thresholds hold at voxels.
+/// A 16-bit code, with a fraction. Between equal codes the value is exact, so thresholds are exact at voxels.
 float value_of(const Density d)
 {
     const float low = bilinear(d.v[0], d.v[1], d.v[2], d.v[3], d.fraction.x, d.fraction.y);
@@ -89,8 +89,8 @@ float value_of(const Density d)
     return low + (high - low) * d.fraction.z;
 }
 
-// The derivative at the fraction `f` between `low` and `high`: f(p + 0.5) - f(p - 0.5) of the interpolant of three
-// consecutive values, where `beyond` is the next value on the nearer side.
+// The derivative at the fraction `f` between `low` and `high`: f(p + 0.5) - f(p - 0.5), where f interpolates three
+// consecutive values and `beyond` is the next value on the nearer side.
 float central(float low, float high, float beyond, float f)
 {
     const float inner = high - low;
@@ -98,7 +98,7 @@ float central(float low, float high, float beyond, float f)
     return inner + (outer - inner) * abs(f - 0.5);
 }
 
-// Pairs of codes along x, one code beyond the corners on the nearer side along y or z.
+// Pairs of codes along x in the next row on the nearer side, along y or along z.
 struct Beyond {
     vec2 y0, y1, z0, z1;
 };
@@ -127,7 +127,7 @@ vec3 gradient_between(const Density d, const Beyond there)
     return vec3(along_x, along_y, along_z);
 }
 
-/// The gradient, in codes per voxel along each axis. The six interpolated taps of the central difference need twelve
+/// The gradient, in codes per voxel along each axis. The six interpolated taps of the central difference use twelve
 /// codes in addition to the eight corners.
 vec3 gradient_of(const Density d)
 {

@@ -1,11 +1,11 @@
-// Sampling of the density by the device's own trilinear filter, with the interface of density_exact.glsl. Needs
-// `atlas`, a sampler3D of R16_UNORM codes, and the counter `density_reads`. Real filters round their weights, commonly
-// to 8 bits, so results differ from exact sampling by up to 1/512 of the local difference per axis.
+// Samples the density by the device's own trilinear filter, with the interface of density_exact.glsl. Needs `atlas`, a
+// sampler3D of R16_UNORM codes, and the counter `density_reads`. Devices round filter weights, commonly to 8 bits, so
+// results differ from exact sampling by up to 1/512 of the local difference per axis.
 #include "atlas.glsl"
 
 struct Density {
     vec3 at;     // texture coordinates
-    int which;   // index of the image, if there are several
+    int which;   // index of the image, if the atlas has several
 };
 
 Density density_at(ivec3 corner, vec3 fraction)

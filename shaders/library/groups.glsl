@@ -6,10 +6,10 @@ uint group_of(uvec3 voxel)
     return slot == 0u ? 0u : imageLoad(mask, ivec3(mask_slot_origin(slot) + voxel % BRICK_SIZE)).x;
 }
 
-// The label with the largest weight among the eight voxels around the position, using trilinear weights, which add up
-// for equal labels. Labels are never mixed, so no new label appears; at the centre of a voxel its own label has all the
-// weight. Beyond the last voxels (`last`) their labels continue. For equal weights the voxel that is first in order of
-// x, y, z wins.
+// The label with the largest weight among the eight voxels around the position. Weights are trilinear, and weights of
+// equal labels add up. Labels are never interpolated, so no new label appears; at a voxel's centre, the voxel's own
+// label has all the weight. Beyond the last voxels (`last`), their labels continue. Ties go to the voxel that is first
+// in order of x, y, z.
 uint group_around(vec3 position, ivec3 last)
 {
     const vec3 lattice = position - 0.5;

@@ -1,13 +1,13 @@
 // The positions of samples along a ray. Needs sample.glsl.
 
-// Maximum step number; it leaves room to add a leap.
+// Maximum step number; a leap can be added to it without overflow.
 const float MAX_STEPS = 2147483648.0;
 
-// A ray's steps: whole steps of equal length, then the rest, a shorter and therefore more transparent step.
+// A ray's steps: whole steps of equal length, then the rest: a shorter and thus more transparent step.
 struct Lattice {
     float begin, end;    // lengths along the ray
     uint whole;          // number of whole steps, and index of the rest
-    float part;          // length of the rest as a fraction of a whole step; 0: there is none
+    float part;          // length of the rest as a fraction of a whole step; 0: no rest
     float rest_middle;   // length along the ray
 };
 
@@ -42,7 +42,7 @@ vec3 sample_position(const RaycastParams params, const Ray ray, float begin, uin
     return position_at(params, ray, step_middle(params, begin, step));
 }
 
-// The middle of a whole step, or of the shorter last one.
+// The middle of a whole step, or of the shorter rest.
 float middle_of(const RaycastParams params, const Lattice lattice, uint step)
 {
     return step < lattice.whole ? step_middle(params, lattice.begin, step) : lattice.rest_middle;

@@ -1,6 +1,6 @@
-// Finds painted bricks: 32^3 voxels without an apron. NO_SLOT means that nothing is painted in a brick. The table is
-// bound at MASK_TABLE_BINDING. A volume of a thousand bricks a side has no room for a table of all bricks, so
-// MASK_TABLE_HASHED selects a hash table that has each brick at one of two places (engine/bricks/painted_table.h).
+// Finds painted bricks: 32^3 voxels without an apron. NO_SLOT: nothing is painted in a brick. The table is bound at
+// MASK_TABLE_BINDING. A table of all bricks would be too large for a volume of a thousand bricks a side, so
+// MASK_TABLE_HASHED selects a hash table with each brick at one of two places (engine/bricks/painted_table.h).
 
 #ifdef MASK_TABLE_HASHED
 layout(binding = MASK_TABLE_BINDING, scalar) readonly buffer MaskTable { uint slots[]; } mask_table;
@@ -19,7 +19,7 @@ uint mask_slot_of(uvec3 brick)
     return mask_slot_at(brick, places.x) | mask_slot_at(brick, places.y);
 }
 #else
-// An image, because every sample reads it, and lavapipe reads buffers one lane at a time.
+// An image instead of a buffer: every sample reads it, and lavapipe reads buffers one lane at a time.
 layout(binding = MASK_TABLE_BINDING, r32ui) uniform readonly uimage3D mask_table;
 
 uint mask_slot_of(uvec3 brick)

@@ -4,11 +4,11 @@ layout(binding = 1, scalar) readonly buffer Directory { uint entries[]; } direct
 layout(binding = 8, r8ui) uniform readonly uimage3D cell_leap;
 layout(binding = 9, scalar) buffer Reached { uint bits[]; } reached;
 
-// The region that contains a position: one with nothing visible (distance > 0), or a brick.
+// The region that contains a position: a brick, or a region with nothing visible (distance > 0).
 struct Place {
     uint distance;    // in cells
     uint cell_shift;  // log2 of a cell's side, in voxels
-    uint box_shift;   // leaps are limited to the cube of 2^box_shift voxels around the position; 31: no limit
+    uint box_shift;   // leaps stay in the cube of 2^box_shift voxels around the position; 31: no limit
     uint slot;
     uint level;
     uint entry;
@@ -16,7 +16,7 @@ struct Place {
     bool is_missing;  // a ray that arrives here waits
 };
 
-// Finds the brick at a position, but not the cell in it: any sample of the brick may be visible, and painted.
+// Finds the brick at a position, but not the cell, so samples anywhere in the brick may be visible and painted.
 Place brick_at(const RaycastParams params, vec3 position)
 {
     const uvec3 voxel = uvec3(position);
@@ -24,8 +24,8 @@ Place brick_at(const RaycastParams params, vec3 position)
     place.cell_shift = params.page_shift;
     place.entry = grid_index(voxel >> place.cell_shift, params.page_counts);
     uint entry = directory.entries[place.entry];
-    // The finest view of the largest volume descends ten times; most pictures never descend. All lanes descend
-    // together, because some devices lose values that one lane sets in a loop that others have left.
+    // The finest view of the largest volume descends ten levels; most pictures descend none. All lanes descend
+    // together, because some devices lose values that a lane sets in a loop after other lanes have left it.
     for (uint depth = 0u; depth < params.page_depth; ++depth) {
         const bool down = entry >> PAGE_LEVEL_SHIFT == PAGE_NODE;
         place.cell_shift -= uint(down);
@@ -57,8 +57,8 @@ Place place_at(const RaycastParams params, vec3 position)
     return place;
 }
 
-// Reports to the host that a ray visited this place; visits decide which bricks are loaded. Rays write only the first
-// visit and otherwise just read, since writes to one word are serialized.
+// Reports to the host that a ray visited this place, since visits decide which bricks are loaded. Only the first visit
+// is written; later rays just read, because writes to one word are serialized.
 void note_reached(const Place place)
 {
     const uint bit = 1u << (place.entry & 31u);

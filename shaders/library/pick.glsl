@@ -1,14 +1,14 @@
-// The point of a ray that the user points at: where its opacity rises most.
+// The point of a ray at which the user points: where the ray's opacity rises most.
 
-// Result of PICK: the run of samples that adds most to the ray's opacity, and the sample in it that adds most.
+// Result of PICK: the run of samples that adds most to the ray's opacity, and the run's sample that adds most.
 struct Rises {
-    float most, most_at;               // the best run so far; members ending in `_at` are lengths along the ray
+    float most, most_at;               // the best run so far; members that end in `_at` are lengths along the ray
     float run, steepest, steepest_at;  // of the present run
-    float peak, trough;                // largest opacity of a sample of this run, and the smallest one after it
+    float peak, trough;                // largest opacity of a sample of this run, and the smallest after that
 };
 
-// A run ends when the opacity of samples has fallen well below its peak and rises again: another structure begins.
-// Slight noise does not end a run.
+// A run ends when the samples' opacity has fallen well below the run's peak and rises again, because another structure
+// begins there. Slight noise does not end a run.
 void note_rise(inout Rises rises, float added, float opacity, float at)
 {
     const bool begins = rises.trough < 0.25 * rises.peak && opacity > 2.0 * rises.trough;

@@ -1,8 +1,8 @@
 // The pixel that a thread draws, and where its ray crosses a plane of points. The includer declares GROUP_WIDTH, which
-// is 8, 16 or 32: a group's 64 threads cover GROUP_WIDTH x 64 / GROUP_WIDTH pixels. Layers of groups take rows of
-// groups in turn (engine/passes/pixel_groups.h).
+// is 8, 16 or 32: a group's 64 threads cover GROUP_WIDTH x 64 / GROUP_WIDTH pixels. Layers of groups are interleaved by
+// rows (engine/passes/pixel_groups.h).
 
-// The pixel relative to the first pixel of the drawn part. Each eight threads, one vector on CPUs, cover 4 x 2 pixels,
+// The pixel relative to the first pixel of the drawn part. Every eight threads (one vector on CPUs) cover 4 x 2 pixels,
 // since neighbouring rays are similar.
 uvec2 thread_in_part()
 {

@@ -1,5 +1,5 @@
 // Intersects a line with balls and rods. A rod is the convex hull of two balls: their common tangent cone, and a part
-// of each ball. Everything is computed from the line's point nearest to the surface, so that a far origin causes no
+// of each ball. All lengths are measured from the line's point nearest to the surface, so that a far origin causes no
 // cancellation (Haines and others, Precision improvements for ray/sphere intersection, Ray Tracing Gems, ch. 7).
 
 struct Line {
@@ -20,8 +20,8 @@ vec2 ball_range(const vec3 center, const vec3 direction, float radius)
     return half_chord_squared < 0.0 ? NOTHING : vec2(middle - half_chord, middle + half_chord);
 }
 
-// A rod along the unit vector `axis`. At x along the axis, its tangent cone has the radius (radius_from - x * sine) /
-// cosine, between the circles where the cone touches the balls.
+// A rod along the unit vector `axis`. At x along the axis, the tangent cone has the radius (radius_from - x * sine) /
+// cosine; it ends at the circles where it touches the balls.
 struct Rod {
     vec3 axis;
     float sine;
@@ -41,11 +41,11 @@ Rod rod_of(const Surface surface)
     return rod;
 }
 
-// The line's points at `from` + shift * direction + s * direction lie on the cone where, with w and u the parts of
-// offset and direction perpendicular to the axis, and x and v the parts along it,
+// The line's point at `from` + shift * direction + s * direction lies on the cone if the equation below holds, where w
+// and u are the parts of offset and direction perpendicular to the axis, and x and v the parts along it:
 //   cosine^2 |w + s u|^2 = (radius - (x + s v) sine)^2.
-// The discriminant is written so that only differences as small as the radii remain: |w x u| / |u| is the distance from
-// the axis. |w|^2 - radius^2 alone would lose a thin rod's radius in its length.
+// The discriminant is arranged so that only terms as small as the radii are subtracted: |w x u| / |u| is the distance
+// from the axis. |w|^2 - radius^2 alone would lose a thin rod's radius in its length.
 vec2 cone_range(const Rod rod, float radius, const vec3 offset, const vec3 direction)
 {
     const float x = dot(offset, rod.axis), v = dot(direction, rod.axis);
@@ -69,7 +69,7 @@ vec2 cone_range(const Rod rod, float radius, const vec3 offset, const vec3 direc
 }
 
 // Lengths along the line where it enters and leaves a surface. `from` is relative to the line's origin. The hull is
-// convex, so every point where the line meets a ball or the cone lies between these two lengths.
+// convex, so all points where the line meets a ball or the cone lie between these two lengths.
 vec2 surface_range(const Surface surface, const vec3 from, const vec3 direction)
 {
     const float shift = dot(from + 0.5 * surface.along, direction);
@@ -83,7 +83,7 @@ vec2 surface_range(const Surface surface, const vec3 from, const vec3 direction)
     return range.x <= range.y ? range + shift : NOTHING;
 }
 
-// The outward unit normal at a point of the surface, given relative to `from`.
+// The outward unit normal at a point of the surface. The point is relative to `from`.
 vec3 surface_normal(const Surface surface, const vec3 point)
 {
     if (surface.along == vec3(0.0)) return normalize(point);

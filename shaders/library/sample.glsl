@@ -1,5 +1,5 @@
-// Computes what a ray sees in one step: density, transfer function, paint, light. Needs raycast.comp's Ray and Place,
-// density_*.glsl and shade.glsl; if MASKED, mask.glsl and `groups`; if OCCLUDED, occlusion.glsl.
+// Computes one step of a ray: density, transfer function, paint, light. Needs raycast.comp's Ray and Place,
+// density_*.glsl and shade.glsl; if MASKED, also mask.glsl and `groups`; if OCCLUDED, also occlusion.glsl.
 #include "classify.glsl"
 #include "texels.glsl"
 #ifdef MASKED
@@ -12,7 +12,7 @@ uint group_at(const RaycastParams params, vec3 position)
     return SMOOTH_BORDERS != 0u ? group_around(position, ivec3(params.position_limit)) : group_of(uvec3(position));
 }
 
-// A painted voxel has the look of its group, whatever its density.
+// A painted voxel has its group's look, regardless of its density.
 vec4 painted(uint group, vec4 look)
 {
     if (group == 0u) return look;
@@ -20,7 +20,7 @@ vec4 painted(uint group, vec4 look)
 }
 #endif
 
-// The density at a point in the brick whose first voxel is at `first`; the point may be half a voxel outside the brick.
+// The density at a point in the brick whose first voxel is at `first`, or up to half a voxel outside that brick.
 float value_near(vec3 in_brick, ivec3 first)
 {
     const vec3 held = clamp(in_brick, -1.0, float(BRICK_SIZE));   // including its aprons
@@ -29,8 +29,8 @@ float value_near(vec3 in_brick, ivec3 first)
 }
 
 // The density at an end of a step, at length `s` along the ray. `texels` are those of the step's middle; the apron of
-// their brick reaches to both ends. The end of a step has the same bits as the beginning of the next step if both are
-// in bricks of one level, because only whole numbers are subtracted from a position.
+// their brick includes both ends. The end of a step and the beginning of the next step get the same bits if both are in
+// bricks of one level, because only whole numbers are subtracted from a position.
 float value_at_end(const RaycastParams params, const Ray ray, float s, const Texels texels, const Place place)
 {
     vec3 lattice = position_at(params, ray, s);
@@ -48,8 +48,8 @@ struct Sample {
 };
 
 // Samples a step with its middle at `position`, in the brick at `place`. PREINTEGRATED: `ends` are the densities at the
-// step's beginning and end, and the opacity is that of the fraction `part` of a step. Otherwise, the opacity is that of
-// a whole step (opacity_of_rest).
+// step's beginning and end, and the result has the opacity of the fraction `part` of a step. Otherwise it has the
+// opacity of a whole step (see opacity_of_rest).
 Sample sample_at(const RaycastParams params, const Ray ray, vec3 position, float part, const Place place, vec2 ends)
 {
     const Texels texels = texels_at(position, place);
@@ -84,7 +84,7 @@ Sample sample_at(const RaycastParams params, const Ray ray, vec3 position, float
     return found;
 }
 
-// The opacity of the fraction `part` of a step whose middle was sampled.
+// The opacity of the fraction `part` of a step, given the sample at its middle.
 float opacity_of_rest(const RaycastParams params, const Sample taken, float part)
 {
     if (part >= 1.0) return taken.look.a;

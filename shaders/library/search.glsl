@@ -1,15 +1,15 @@
-// Searches for the next visible sample. In noise near the threshold hardly a cell is empty and hardly a sample shows
-// anything, so only densities are read, several samples at a time, before any is shaded. Needs raycast.comp's Ray,
-// Place, Work and texels_at.
+// Searches for the next visible sample. In noise near the threshold, few cells are empty and few samples show anything.
+// So only densities are read, several samples at a time, before a sample is shaded. Needs raycast.comp's Ray, Place,
+// Work and texels_at.
 //
-// Lanes that leave a loop early wait for the others, and lavapipe does not keep values that a lane has set in a loop
-// that it left. Therefore only the step and counts, which are added to, survive these loops; the sample found is read
+// Lanes that leave a loop early wait for the other lanes, and lavapipe loses values that such a lane has set in the
+// loop. Therefore only the step and counts, which are incremented, survive these loops; the sample found is read
 // again.
 
-// Maximum iterations; lanes that have found nothing by then take a sample like the others.
+// Maximum iterations; lanes that have found nothing by then take a sample like the other lanes.
 const uint MAX_SEARCH_TURNS = 20u;
-// Whether the sample at `position` may show anything. A painted sample may, whatever its density. So may any step that
-// is classified by the densities at its ends, since its middle tells nothing about it.
+// Whether the sample at `position` may show anything. A painted sample may, regardless of its density. So may every
+// step classified by the densities at its ends, since the density at its middle does not bound these.
 bool may_be_seen(const RaycastParams params, vec3 position, const Place place)
 {
     if (PREINTEGRATED != 0u) return true;
@@ -19,17 +19,17 @@ bool may_be_seen(const RaycastParams params, vec3 position, const Place place)
 }
 
 #ifdef BITTED
-// With sample bits (leap.h), a sample costs one load as long as none may show something.
+// With sample bits (leap.h), samples cost one load each until a sample may show something.
 
-// Minimum empty space, in cells, around places worth leaping from in a loop. In noise, nearly all leaps are short.
+// Leaps are repeated only while more than this many cells around are empty. In noise, nearly all leaps are short.
 const uint NEAR = 1u;
 
-// Samples per iteration whose density is read once a bit is set: in noise above a threshold, set bits come in groups.
+// Number of samples per iteration that are read after a set bit: in noise above a threshold, set bits are clustered.
 const uint ASKED_IN_TURN = 2u;
 
-// Which of the samples from step `i` on have their bits set; the lowest bit is that of step `i`. Positions are in fixed
-// point (leap.h), which costs a fraction of the work: coordinates are scaled so that the lowest bits of their voxels
-// lie next to each other, as in a bit's index.
+// The bits of the samples from step `i` on; the lowest bit is that of step `i`. Positions are in fixed point (leap.h),
+// which is much cheaper: the axes are scaled so that the lowest bits of x, y and z are next to each other, as in a
+// bit's index.
 uint bits_ahead(const RaycastParams params, const Ray ray, float begin, uint i)
 {
     const vec3 parts = vec3(SAMPLE_BIT_PARTS, SAMPLE_BIT_PARTS << 2, SAMPLE_BIT_PARTS << 4);
@@ -38,7 +38,7 @@ uint bits_ahead(const RaycastParams params, const Ray ray, float begin, uint i)
     uvec3 place = uvec3(ivec3((sample_position(params, ray, begin, i) + 0.5) * parts));
     uint found = 0u;
     [[unroll]] for (uint k = 0u; k < SAMPLE_BITS_AHEAD; ++k) {
-        const uvec3 held = min(place, last);   // a ray may leave the volume; values outside are not used
+        const uvec3 held = min(place, last);   // a ray may leave the volume; bits of samples outside are not used
         const uint bits = imageLoad(sample_bits, ivec3(held / (uvec3(parts) * uvec3(4u, 4u, 2u)))).x;
         const uint bit = (held.x & 3u * uint(parts.x) | held.y & 3u * uint(parts.y) | held.z & uint(parts.z)) /
                          SAMPLE_BIT_PARTS;
@@ -93,8 +93,8 @@ void search_bits(const RaycastParams params, const Ray ray, float begin, uint en
 }
 #endif
 
-// Advances to a step whose sample may be visible, to the first step at which the search stops, or to `end_step`.
-// `unseen` counts samples that showed nothing.
+// Advances to a step whose sample may be visible, to the first step at which the search has to stop, or to `end_step`.
+// `unseen` counts samples that show nothing.
 void search_sample(const RaycastParams params, const Ray ray, float begin, uint end_step, inout uint i,
                    inout uint unseen, inout Work work)
 {

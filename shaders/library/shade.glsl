@@ -1,8 +1,8 @@
 // Local illumination.
 #include "blend.glsl"
 
-// x^shininess. Powers of two, which most sessions use, are computed by squaring: exp2 and log2 took a tenth of a shaded
-// picture's time on a CPU. The floor keeps intermediate values out of the denormal range, which is even slower.
+// x^shininess. Powers of two, used by most sessions, are computed by squaring: exp2 and log2 took a tenth of a shaded
+// picture's time on a CPU. The lower bound avoids denormal intermediate values, which are even slower.
 float power(float x, float shininess)
 {
     if (SHININESS_SQUARINGS < NOT_A_POWER_OF_TWO) {
@@ -14,7 +14,7 @@ float power(float x, float shininess)
     return shininess == 0.0 ? 1.0 : x <= 0.0 ? 0.0 : exp2(shininess * log2(x));
 }
 
-// The half vector, normalised; 0 if the light is straight behind the sample.
+// The normalised half vector; 0 if the light is exactly opposite to the eye.
 vec3 half_way(vec3 light, vec3 to_eye)
 {
     const vec3 sum = light + to_eye;
@@ -22,8 +22,8 @@ vec3 half_way(vec3 light, vec3 to_eye)
     return sum_length > 1e-6 ? sum / sum_length : vec3(0.0);
 }
 
-// Blinn-Phong with one white light (Blinn 1977). `surface`: the degree to which the normal is that of a surface; at 0
-// the highlight vanishes and the diffuse term is its full, directionless value.
+// Blinn-Phong with one white light (Blinn 1977). `surface`: how much the normal is that of a surface, 0 to 1; at 0
+// there is no highlight, and the diffuse term has its full value in all directions.
 vec3 lit(const RaycastParams params, float ambient, vec3 color, vec3 normal, float surface, vec3 half_way)
 {
     const float facing = max(dot(normal, params.light), 0.0);
@@ -32,7 +32,7 @@ vec3 lit(const RaycastParams params, float ambient, vec3 color, vec3 normal, flo
     return min(color * (ambient + params.diffuse * mix(1.0, facing, surface)) + highlight, vec3(1.0));
 }
 
-// A gradient far below `gradient_fade` counts as no surface; otherwise flat regions would sparkle or go dark.
+// A gradient far below `gradient_fade` counts as no surface; otherwise flat regions would flicker or turn dark.
 vec3 shade(const RaycastParams params, float ambient, vec3 color, vec3 slope, vec3 half_way)
 {
     const float square = dot(slope, slope);

@@ -1,43 +1,43 @@
 // Thin-shell iso-surface in the region around the probe, where the trilinear field crosses a threshold. Crossings are
-// solved per cell, not at samples, so that nothing thinner than a step is missed. Along a ray the field in a cell is a
-// cubic; it is split where its derivative is 0, and each piece has at most one crossing (Marmitt and others 2004, "Fast
-// and accurate ray-voxel intersection techniques for iso-surface ray tracing"). Cells of 4^3 voxels whose range shows
-// that the field stays on the ray's side of the threshold are skipped at once.
+// solved per cell instead of at samples, so shells thinner than a step are not missed. Along a ray the field in a cell
+// is a cubic; it is split where its derivative is 0, and each piece has at most one crossing (Marmitt and others 2004,
+// "Fast and accurate ray-voxel intersection techniques for iso-surface ray tracing"). Cells of 4^3 voxels whose range
+// shows that the field stays on the ray's side of the threshold are skipped at once.
 //
-// Whether the ray is inside is carried from cell to cell. If rounding loses a crossing at a border, the next cell finds
-// it at its start, so there are neither holes nor duplicates. Variables needed after the loop are carried through it,
-// since lanes that leave the loop early lose all other variables.
+// A flag that is carried from cell to cell tells whether the ray is inside. If rounding loses a crossing at a border,
+// the next cell finds the crossing at its start, so there are neither holes nor duplicates. Variables needed after the
+// loop are carried through it, since lanes that leave the loop early lose all other variables.
 #include "voxel_code.glsl"
 
-// A tolerance in reference lengths. A piece of the ray shorter than this counts as part of the neighbouring cell; a
-// shell thinner than this is ignored. Far along a ray it is at least two ulps, so that every search advances.
+// A tolerance in reference lengths. A piece of the ray shorter than this belongs to the neighbouring cell; a thinner
+// shell is ignored. Far along a ray, the tolerance is at least two ulps, so that every search advances.
 float hair_at(float s)
 {
     const float HAIR = 1e-3, TWO_ULPS = 2.384185791015625e-7;
     return max(HAIR, s * TWO_ULPS);
 }
 
-// Cells are always searched as a whole, even if a block of the ray's steps ends in one, so that crossings do not depend
-// on how rays are divided.
+// A cell is always searched as a whole, even if a block of the ray's steps ends in the cell, so that crossings do not
+// depend on how rays are divided into blocks.
 struct Shell {
     float next;       // length along the ray of the next crossing
-    float from;       // length where the search continues; below 0: it has not begun
+    float from;       // length where the search continues; below 0: not begun
     float known;      // all crossings before this length are known
-    float limit;      // cells that begin here or later are left to later dispatches
+    float limit;      // cells from this length on are left to later dispatches
     float end;
     bool is_inside;   // at `from`
     bool waits;       // for a brick
-    uint turns;       // iterations of both loops; MAX_TURNS are more than any ray with finite coordinates needs
+    uint turns;       // iterations of both loops; MAX_TURNS is more than a ray with finite coordinates needs
 };
 
-// The lattice cell around a position, in the brick that contains the position.
+// The cell of the lattice around a position, within the position's brick.
 struct Cell {
     bool is_there;
     bool is_missing;  // the ray waits
     vec3 corner;      // lower corner, on the lattice of the brick's level
     ivec3 to_atlas;
     float scale;      // side of a cell, in voxels of level 0
-    float exit;       // length along the ray where it leaves the cell
+    float exit;       // length along the ray where it leaves this cell
 };
 
 Cell cell_at(const RaycastParams params, const Ray ray, vec3 position)
@@ -62,7 +62,7 @@ Cell cell_at(const RaycastParams params, const Ray ray, vec3 position)
 #else
     cell.to_atlas = place_of_first();
 #endif
-    // A brick ends half-way through a cell, and the next brick may be of another level.
+    // A brick ends in the middle of a cell, and the next brick may have another level.
     const float brick_size = cell.scale * float(BRICK_SIZE);
     const vec3 of_cell = ((cell.corner + 0.5 + ray.ahead) * cell.scale - ray.origin) * ray.inverse;
     const vec3 of_brick = ((vec3(brick) + ray.ahead) * brick_size - ray.origin) * ray.inverse;
@@ -76,9 +76,9 @@ vec3 fraction_in(const Cell cell, vec3 position)
     return clamp(position / cell.scale - 0.5 - cell.corner, 0.0, 1.0);
 }
 
-// The codes at a cell's corners, x fastest: loaded once for the four values that a cubic needs. Never read through a
-// sampler, which rounds its weights, commonly to 8 bits: a cubic through such values has extrema where the field has
-// none.
+// The codes at a cell's corners, x fastest, loaded once for the four values that a cubic needs. Never read by a
+// sampler: samplers round their weights, commonly to 8 bits, and a cubic through such values has extrema that the field
+// does not have.
 struct Corners {
     float v[8];
 };
@@ -113,18 +113,18 @@ float cubic(vec4 c, float u)
     return c.x + u * (c.y + u * (c.z + u * c.w));
 }
 
-// The zeros of the cubic's derivative, ascending; those outside 0 ... 1, or missing, become 0 or 1.
+// The zeros of the cubic's derivative, ascending. Zeros outside 0 ... 1, and missing ones, become 0 or 1.
 vec2 turning_points(vec4 c)
 {
     const float discriminant = c.z * c.z - 3.0 * c.y * c.w;
     if (!(discriminant > 0.0)) return vec2(1.0);
-    // The form without cancellation (Press and others, Numerical Recipes, 5.6).
+    // The form of the quadratic formula without cancellation (Press and others, Numerical Recipes, 5.6).
     const float q = -(c.z + (c.z < 0.0 ? -1.0 : 1.0) * sqrt(discriminant));
     const float a = c.w != 0.0 ? q / (3.0 * c.w) : 1.0, b = q != 0.0 ? c.y / q : 1.0;
     return clamp(vec2(min(a, b), max(a, b)), 0.0, 1.0);
 }
 
-// The crossing between two points on different sides.
+// The crossing between two points on different sides of the threshold.
 float crossing(vec4 c, float low, float high, bool low_is_inside)
 {
     for (int i = 0; i < 10; ++i) {
@@ -137,7 +137,7 @@ float crossing(vec4 c, float low, float high, bool low_is_inside)
     return mix(low, high, a != b ? clamp(a / (a - b), 0.0, 1.0) : 0.5);
 }
 
-// Advances to a cell of 4^3 voxels (leap.h) that may contain a crossing, or to the end of the search range.
+// Advances to a cell of 4^3 voxels (leap.h) that may contain a crossing, or to the end of the searched range.
 void pass_clear_cells(const RaycastParams params, const Ray ray, inout Shell shell)
 {
     bool is_clear;
@@ -167,7 +167,7 @@ void pass_clear_cells(const RaycastParams params, const Ray ray, inout Shell she
     } while (is_clear);
 }
 
-// Finds the next crossing. Sets `next` to NO_SHELL if the region, or the search range, ends first.
+// Finds the next crossing. Sets `next` to NO_SHELL if the region or the searched range ends first.
 void search_shell(const RaycastParams params, const Ray ray, inout Shell shell)
 {
     shell.next = shell.waits ? shell.next : NO_SHELL;
@@ -193,7 +193,7 @@ void search_shell(const RaycastParams params, const Ray ray, inout Shell shell)
             const bool at_low = cubic(c, turns.x) >= 0.0, at_high = cubic(c, turns.y) >= 0.0;
             is_inside = g3 >= 0.0;
             const bool was = shell.is_inside;
-            // Takes the first piece whose ends lie on different sides; SIMD devices would search all three.
+            // Selects the first piece whose ends are on different sides; SIMD devices would otherwise search all three.
             const bool in_first = at_low != was, in_middle = !in_first && at_high != was;
             const vec2 piece = in_first    ? vec2(0.0, turns.x)
                                : in_middle ? turns
@@ -228,14 +228,14 @@ vec2 shell_range(const RaycastParams params, const Ray ray)
     const vec3 direction = ray.direction * params.spacing;  // of length 1
     const vec3 from_center = (ray.origin - params.shell_center) * params.spacing;
     const float middle = -dot(from_center, direction);
-    // Uses the ray's nearest point: from the origin, b^2 - c would cancel (Haines and others, Ray Tracing Gems, 7).
+    // Computes from the ray's nearest point: at its origin, b^2 - c cancels (Haines and others, Ray Tracing Gems, 7).
     const vec3 nearest = from_center + middle * direction;
     const float reach = params.shell_reach.x * params.spacing.x;
     const float half_chord = sqrt(max(reach * reach - dot(nearest, nearest), 0.0));
     return middle + vec2(-half_chord, half_chord);
 }
 
-// `limit`: end of the part of the ray that this dispatch follows. `kept`, `is_inside`: state left by an earlier part
+// `limit`: end of the part of the ray for this dispatch. `kept`, `is_inside`: state left by an earlier dispatch
 // (raycast.h).
 Shell begin_shell(const RaycastParams params, const Ray ray, const Lattice lattice, float limit, vec2 kept,
                   bool is_inside)
@@ -260,13 +260,13 @@ Shell begin_shell(const RaycastParams params, const Ray ray, const Lattice latti
     return shell;
 }
 
-// The length along the ray up to which there is known to be no crossing.
+// The length along the ray up to which no crossing is left to be found.
 float known_until(const Shell shell)
 {
     return shell.next == NO_SHELL && shell.waits ? shell.known : shell.next;
 }
 
-// Whether a crossing before `s` may still be unknown, or cannot be drawn yet.
+// Whether the ray must wait for a brick: a crossing before `s` may still be unknown, or cannot be drawn yet.
 bool shell_waits(const RaycastParams params, const Shell shell, float s, vec4 sum)
 {
     return shell.waits && sum.a < params.opacity_limit && known_until(shell) < s;
@@ -285,14 +285,14 @@ vec4 shell_look(const RaycastParams params, const Ray ray, const Cell cell, vec3
     return vec4(color, params.shell_opacity);
 }
 
-// Whether there is a crossing before `s` to add, or the next crossing must be searched for.
+// Whether a crossing before `s` has to be added, or the next crossing has to be searched for.
 bool has_more_shells(const RaycastParams params, const Shell shell, float s, vec4 sum)
 {
     const bool is_unknown = shell.next == NO_SHELL && shell.from >= 0.0 && shell.from < shell.limit;
     return (is_unknown || shell.next < s) && sum.a < params.opacity_limit && !shell.waits && shell.turns < MAX_TURNS;
 }
 
-// Adds the crossings before `s`, and finds the one after them.
+// Adds the crossings before `s`, and finds the next crossing.
 void add_shells(const RaycastParams params, const Ray ray, float s, inout Shell shell, inout vec4 sum)
 {
     bool goes_on = has_more_shells(params, shell, s, sum);

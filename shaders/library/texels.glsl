@@ -1,7 +1,7 @@
 // Locates the texels around a position. Needs density_*.glsl and Place.
 
 struct Texels {
-    vec3 lattice;    // position on the lattice of voxel centres of the brick's level
+    vec3 lattice;    // position in units of the brick's voxels, 0 at the first voxel's centre
     uvec3 brick;
     ivec3 corner;
     vec3 fraction;   // between the corner and the next texels
@@ -9,8 +9,8 @@ struct Texels {
     uint slot;
 };
 
-// Cell and fraction come from the global position, and only the integer part is moved into the brick. So a bricked
-// volume gives the same bits as a volume in a single texture. Without a brick, the values that are read are not used.
+// Cell and fraction are computed from the global position; only the integer part is moved into the brick. A bricked
+// volume thus gives the same bits as a volume in a single texture. Without a brick, the values read are unused.
 Texels texels_at(vec3 position, const Place place)
 {
     Texels texels;

@@ -1,5 +1,5 @@
 // Reads the 16-bit code of one voxel of the density atlas, in any layout. Needs what atlas.glsl needs. If bricks are
-// side by side, the outermost voxels along x repeat.
+// contiguous, the outermost voxels along x are repeated.
 #include "atlas.glsl"
 
 float code_at(ivec3 place)

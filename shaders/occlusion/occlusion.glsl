@@ -1,5 +1,5 @@
 // The light that reaches a sample, interpolated between voxel values (occlusion.h). Needs `occlusion` (r8ui) and
-// `occlusion_look`. The shader itself interpolates: 8-bit filters are coarse on many devices, and not every device can
+// `occlusion_look`. Interpolates by arithmetic: 8-bit filters are coarse on many devices, and not every device can
 // filter this format.
 
 float occlusion_value(ivec3 texel)
@@ -7,8 +7,8 @@ float occlusion_value(ivec3 texel)
     return float(imageLoad(occlusion, texel).x);
 }
 
-// `lattice`: position in voxels of the brick's level; `to_values`: offset from that position to the brick's texels;
-// `last`: the last voxel of that level.
+// `lattice`: position in voxels of the brick's level. `to_values`: offset from this position to the brick's texels.
+// `last`: the last voxel of this level.
 float ambient_share(vec3 lattice, ivec3 to_values, vec3 last)
 {
     const vec3 held = clamp(lattice, vec3(0.0), last);   // no values exist beyond the volume's edge

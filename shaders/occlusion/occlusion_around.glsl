@@ -1,4 +1,4 @@
-// Looks up the bricks around a brick whose values are computed, and which of its cells may be visible. Needs
+// Looks up the bricks around a brick whose values are computed, and which of these bricks' cells may be visible. Needs
 // `bricks_around` and, if PAGED, `cell_leap`, otherwise `leap`.
 
 #ifdef PAGED
@@ -26,7 +26,7 @@ uint entry_at(uint reach, ivec3 brick_offset)
     return around[grid_index(uvec3(brick_offset + int(reach)), uvec3(2u * reach + 1u))];
 }
 
-// `cell`: position in cells of the brick; positions outside it are in its neighbours.
+// `cell`: position in cells of the brick; positions outside the brick are in its neighbours.
 bool cell_is_occupied(uint reach, uvec3 cell_counts, const OcclusionJob job, ivec3 cell)
 {
 #ifdef PAGED

@@ -1,7 +1,7 @@
 // Computes how much light reaches every potentially visible voxel of a brick, by the definition in occlusion.h. A ray
 // takes three samples in ramps of voxels, three in ramps of cells of two voxels and two in cells of four. PAGED: cells
-// are those of paged bricks. STRETCHED: 0 if voxels are cubes, otherwise 1 or 2; at 2, all samples in cells use cells
-// of two voxels, since cells of four are longer than the distances to resolve.
+// are those of paged bricks. STRETCHED: 0 if voxels are cubes, otherwise 1 or 2. At 2, all samples in cells use cells
+// of two voxels, since cells of four are longer than the distances to be resolved.
 // variants: PAGED FILTERED
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -23,7 +23,7 @@ layout(binding = 4, r32ui) uniform readonly uimage3D near;
 layout(binding = 5, r32ui) uniform readonly uimage3D around_2;
 layout(binding = 6, r32ui) uniform readonly uimage3D around_4;
 #else
-// Outside the volume, reads return 0 (robustImageAccess), which means empty.
+// Outside the volume, reads return 0 (robustImageAccess), which is an empty cell.
 layout(binding = 5, r32ui) uniform readonly uimage3D cells_2;
 layout(binding = 6, r32ui) uniform readonly uimage3D cells_4;
 #define around_2 cells_2
@@ -50,26 +50,26 @@ layout(binding = 10, scalar) readonly buffer Opacities { OcclusionEntry entries[
 OcclusionBakeParams params;
 #include "../library/occupancy.glsl"
 
-// These constants were found by optimization: minimal errors over the cases of
-// tests/gpu/occlusion/occlusion_light_test.cpp. MARGIN_4: distance by which a cell of 4 counts as nearer to the
-// surface, in units.
+// These constants were found by optimization: they minimize the errors over the cases of
+// tests/gpu/occlusion/occlusion_light_test.cpp. MARGIN_4: distance, in units, by which a cell of 4^3 voxels counts as
+// nearer to the surface than it is.
 const float MARGIN_4 = 0.853;
-// Factor of the share of a cell of 4 that is attributed to the surface.
+// Scales the share of a cell of 4^3 voxels that is attributed to the surface.
 const float WALL_4 = 8.2;
-// Degree to which the opacity of a cell of 4 is concentrated at the start of the stretch.
+// How much the opacity of a cell of 4^3 voxels is concentrated at the start of the stretch.
 const float BEND_4 = 0.08;
-// Ramps are softened more with distance, since rays represent the directions around them.
+// Ramps are softened with distance, because a ray also represents the directions around it.
 const float SOFT_NEAR[] = {1.25, 0.874, 0.734}, SOFT_2[] = {0.751, 0.59, 0.527, 0.5, 0.45};
 const float STEEPEST_OF_VOXELS = 3.3, STEEPEST_OF_CELLS = 2.6;   // occlusion_ramp.glsl
 
 #include "occlusion_listed.glsl"
 
-// Positions are relative to the block of 4^3 voxels that contains the voxel. These numbers of voxels are added, so that
-// positions are above 0 when truncated: the arithmetic is the same wherever a brick, or its apron, begins.
+// Positions are relative to the block of 4^3 voxels that contains the voxel. These numbers of voxels are added so that
+// positions are positive when truncated. The arithmetic is thus the same for every brick and apron.
 const int NEAR_AHEAD = 4, CELLS_AHEAD = 64;
 
-// Converts positions in that block to texels of the scratch images, which hold jobs stacked along z, and to the cells
-// of a resident volume. The box that blocks light is in the same coordinates; everything outside it is empty.
+// Converts positions relative to the block to texels of the scratch images, which hold jobs stacked along z, and to
+// cells of a resident volume. The box that blocks light is in the same coordinates; space outside the box is empty.
 struct Block {
     ivec3 to_near, to_2, to_4;
     vec3 lower, upper;
@@ -94,13 +94,13 @@ Block block_of(const OcclusionJob of, ivec3 voxel)
                  share * params.voxels.lower - begin, share * params.voxels.upper - begin);
 }
 
-// Densities on one side of a voxel, in the direction of steepest fall: a cubic up to the neighbours, constant beyond.
+// Densities on one side of a voxel along the steepest fall: a cubic up to the neighbours, constant beyond them.
 struct Course {
     vec4 factors;
     float least, most;
 };
 
-// `to`: direction of the neighbours on that side along the axes; `rise`: the part of a length along each axis.
+// `to`: direction along the axes of the neighbours on this side. `rise`: each axis's part of a length.
 Course course_of(ivec3 texel, ivec3 to, vec3 rise, float own)
 {
     const ivec3 x = ivec3(to.x, 0, 0), y = ivec3(0, to.y, 0), z = ivec3(0, 0, to.z);
@@ -127,7 +127,7 @@ float opacity_along(const Course course, float along)
     return opacity_of(params.voxels, clamp(code, course.least, course.most));
 }
 
-// The fixed opacity of the voxel at `place`, whatever its density; below 0: none.
+// The fixed opacity of the voxel at `place`, regardless of density; below 0: none.
 float held_at(const Block block, vec3 place)
 {
     const ivec3 voxel = ivec3(place + float(NEAR_AHEAD));
@@ -139,17 +139,17 @@ float held_at(const Block block, vec3 place)
     return is_inside ? held : 0.0;
 }
 
-// The surface at a voxel, and the contribution to cells of 4 from the half-space behind the surface; that half-space
-// blocks no ray that leaves the surface.
+// The surface at a voxel, and the half-space behind the surface, which contributes to cells of 4^3 voxels but blocks no
+// ray that leaves the surface.
 struct Surface {
     vec3 normal;
     float strength;
     vec3 place;     // start of rays, in voxels from the block's corner
     vec3 heights;   // direction in which densities fall fastest, in voxels
-    vec3 scale;     // share of a cell's columns that lies behind the surface, per axis: base - scale * height in cells
+    vec3 scale;     // share of a cell's columns behind the surface, per axis: base - scale * height in cells
     vec3 base;
     float height;   // distance of the surface, as dot(heights, position) in cells
-    float wall;     // opacity of the half-space behind the surface over the stretch of a tap
+    float wall;     // opacity, over a tap's stretch, of the half-space behind the surface
 };
 
 float saturated(float share)
@@ -204,14 +204,14 @@ Surface surface_at(const Block block, ivec3 texel, vec3 centre, vec3 slope)
     return s;
 }
 
-// Removes the contribution of the half-space behind the surface from an opacity.
+// Removes the half-space behind the surface from an opacity.
 float beyond_surface(float opacity, float of_surface)
 {
     const float own = min(of_surface, 0.95);
     return max(opacity - own, 0.0) / (1.0 - own);
 }
 
-// `leaves`: 1 if the ray leaves the surface, otherwise 0.
+// `leaves`: 1 if the ray points away from the surface, otherwise 0.
 float cell_tap(const Surface s, ivec3 cell, uint packed, vec3 weights, float leaves)
 {
     const vec3 code = vec3(uvec3(packed, packed >> 8u, packed >> 16u) & 255u);
@@ -221,7 +221,7 @@ float cell_tap(const Surface s, ivec3 cell, uint packed, vec3 weights, float lea
     return beyond_surface(opacity, leaves * s.wall * dot(weights, behind));
 }
 
-// x: light left; y: light that has arrived. `left` is the transmittance of the stretch, `half_left` that of half of it.
+// x: light left; y: light arrived so far. `left`: transmittance of the stretch; `half_left`: that of its first half.
 vec2 after(vec2 light, float stretch, float left, float half_left)
 {
     return vec2(light.x * left, light.y + light.x * stretch * half_left);
@@ -232,7 +232,7 @@ vec2 after_cell(vec2 light, float stretch, float stopped)
     return vec2(light.x * (1.0 - stopped), light.y + light.x * stretch * (1.0 - stopped * (0.5 + BEND_4 * stopped)));
 }
 
-// A ramp of maximum steepness stands for a sharper edge, drawn as wide as in cubes of the voxel's shortest side.
+// A ramp of maximum steepness stands for a sharper edge, as wide as in cubes with the voxel's shortest side.
 float sharpened_for(vec3 slope, float softened, float steepest)
 {
     if (STRETCHED == 0u) return softened;
@@ -242,15 +242,15 @@ float sharpened_for(vec3 slope, float softened, float steepest)
     return softened * mix(1.0, sqrt(square / max(dot(physical, physical), 1e-6)), is_steepest);
 }
 
-// The share of a ray's light left after the stretch of a ramp, at an offset from the centre of the cube, whose side is
-// 1. A ramp is `softened` about the middle of its rise.
+// The share of a ray's light left after the stretch of a ramp. The ray samples the ramp at an offset from the centre of
+// the cube, whose side is 1. A ramp is `softened` about the middle of its rise.
 float ramp_left(uint packed, vec3 from_middle, float softened, float steepest)
 {
     const vec3 slope = vec3(ramp_slope(packed));
     const float along = dot(slope, from_middle), sharpened = sharpened_for(slope, softened, steepest);
     const float rise = float(ramp_height(packed)) + RAMP_HEIGHTS / RAMP_SLOPES * along;
     const float top = float(packed & 255u), share = clamp(0.5 + sharpened / RAMP_HEIGHTS * rise, 0.0, 1.0);
-    return 1.0 - top * top * (1.0 / 65025.0) * share;   // 255^2 times this is 1 in floats, too
+    return 1.0 - top * top * (1.0 / 65025.0) * share;   // 255^2 times this factor is exactly 1 in floats as well
 }
 
 float near_left(const Block block, vec3 place, float softened)
@@ -267,14 +267,14 @@ float left_of_2(const Block block, vec3 place, float softened)
                      STEEPEST_OF_CELLS);
 }
 
-// The weights of the opacities along a cell's axes; `step` in voxels.
+// The weights of the opacities along a cell's axes; `step` is in voxels.
 vec3 weights_of(vec3 direction, vec3 step)
 {
     return STRETCHED != 0u ? step * step / dot(step, step) : direction * direction;
 }
 
-// Light that arrives along a ray, in units. Reads no buffers and has no loops, since SIMD devices would run either lane
-// by lane.
+// The light that arrives along a ray, in units. Uses neither buffers nor loops, because SIMD devices would run both
+// lane by lane.
 float along(const Surface s, const Block block, vec3 direction, float leaves, ivec3 in_block)
 {
     const vec3 step = direction * params.inverse_spacing, weights = weights_of(direction, step);
@@ -284,7 +284,7 @@ float along(const Surface s, const Block block, vec3 direction, float leaves, iv
     const vec3 near_2 = begin + params.near_taps[2].distance * step;
     const ivec3 own = in_block + NEAR_AHEAD;
     float left_0 = near_left(block, near_0, SOFT_NEAR[0]), left_1 = near_left(block, near_1, SOFT_NEAR[1]);
-    // The stretch of the last sample is twice that of the others.
+    // The last sample's stretch is twice as long as that of the other samples.
     float half_2 = near_left(block, near_2, SOFT_NEAR[2]);
     half_2 = ivec3(near_2) == own ? 1.0 : half_2;
     const float left_2 = half_2 * half_2;
@@ -316,8 +316,8 @@ float along(const Surface s, const Block block, vec3 direction, float leaves, iv
     return after_cell(light, params.taps_4[1].stretch, cell_tap(s, cell_1, packed_1, weights, leaves)).y;
 }
 
-// Stores the value at the voxel and at its copies in other bricks; paged bricks compute their own copies. Aprons
-// without a brick of this level repeat their edge voxels.
+// Stores the value at the voxel and at the voxel's copies in other bricks (paged bricks compute their own copies).
+// Aprons without a brick of this level repeat their edge voxels.
 void store(const OcclusionJob job, ivec3 voxel, bool is_apron, uint value)
 {
     const ivec3 side = ivec3(equal(voxel, ivec3(31))) - ivec3(equal(voxel, ivec3(0)));
@@ -363,11 +363,11 @@ void main()
                                       code_at(texel + ivec3(0, 1, 0)) - code_at(texel - ivec3(0, 1, 0)),
                                       code_at(texel + ivec3(0, 0, 1)) - code_at(texel - ivec3(0, 0, 1)));
         const Surface surface = surface_at(block, texel, vec3(in_block) + 0.5, slope);
-        // Two vectors orthogonal to the normal and to each other (Duff et al. 2017).
+        // Two unit vectors orthogonal to the normal and to each other (Duff et al. 2017).
         const vec3 n = surface.normal;
         const float up = n.z < 0.0 ? -1.0 : 1.0, a = -1.0 / (up + n.z), b = n.x * n.y * a;
         const vec3 one = vec3(1.0 + up * n.x * n.x * a, up * b, -up * n.x), other = vec3(b, up + n.y * n.y * a, -n.y);
-        // Rays go behind the surface down to height -open; lower ones are replaced by their mirror images in front.
+        // Directions reach behind the surface down to a height of -open; lower ones are mirrored to the front.
         const float open = params.full_sphere != 0u ? 1.0 : 1.0 - surface.strength;
 
         float sum = 0.0;

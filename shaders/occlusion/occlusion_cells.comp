@@ -24,7 +24,7 @@ layout(binding = 5, r32ui) uniform writeonly uimage3D cells_4;
 #include "../library/voxel_code.glsl"
 #include "occlusion_ramp.glsl"
 
-// x: the voxel's density; y: the voxel's fixed opacity, negative if there is none.
+// x: the voxel's density. y: the voxel's fixed opacity; negative if the opacity is not fixed.
 vec2 voxel_at(const OcclusionCellsParams params, const OcclusionCellsJob job, uvec3 voxel)
 {
 #ifdef PAGED
@@ -36,7 +36,7 @@ vec2 voxel_at(const OcclusionCellsParams params, const OcclusionCellsJob job, uv
     return vec2(code_at(first + ivec3(voxel)), opacity_held(params, centre));
 }
 
-// Differences along each axis between the voxels of a cell of 2^3: `a` has those with the lower z, `b` the others.
+// Differences along each axis between the voxels of a cell of 2^3: `a` at the lower z, `b` at the higher z.
 vec3 slope_of(vec4 a, vec4 b)
 {
     const vec4 x = vec4(a.yw - a.xz, b.yw - b.xz), y = vec4(a.zw - a.xy, b.zw - b.xy);
@@ -53,7 +53,7 @@ float most_of(vec4 v)
     return max(max(v.x, v.y), max(v.z, v.w));
 }
 
-// Makes the ramp of a cell. If the opacity of any voxel is fixed, uses opacities alone, not densities.
+// Computes the ramp of a cell: from opacities instead of densities if any voxel's opacity is fixed.
 uint ramp_of_cell(const OcclusionCellsParams params, vec4 codes[2], vec4 opacities_of[2], bool is_held)
 {
     const vec4 a = is_held ? opacities_of[0] : codes[0], b = is_held ? opacities_of[1] : codes[1];
@@ -89,7 +89,7 @@ void main()
 #endif
     for (uint z = 0u; z < 8u; ++z) {
         const uvec3 block = uvec3(gl_LocalInvocationID.xy, z);   // of 4^3 voxels
-        // Transmittances of columns of four voxels: along x indexed by (y, z), along y by (x, z), along z by (x, y).
+        // Transmittances of columns of four voxels: along x, indexed by (y, z); along y, by (x, z); along z, by (x, y).
         vec4 left_x[4] = vec4[4](vec4(1.0), vec4(1.0), vec4(1.0), vec4(1.0)), left_y[4] = left_x, left_z[4] = left_x;
         for (uint octant = 0u; octant < 8u; ++octant) {
             const uvec3 of_cube = corner_of_cube(octant), half_block = 2u * block + of_cube;

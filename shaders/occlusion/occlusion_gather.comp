@@ -1,5 +1,5 @@
 // Gathers the data that a brick's rays sample around it (occlusion.h): ramps of voxels, computed from densities and
-// gradients, and copies of the cells of paged bricks. Cells of a resident volume are already side by side.
+// gradients, and copies of the cells of paged bricks. Cells of a resident volume are already contiguous.
 // variants: PAGED FILTERED MASKED
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -41,7 +41,7 @@ layout(binding = 13, r32ui) uniform writeonly uimage3D around_4;
 
 const uint CELLS_A_SIDE = NEAR_SIDE / CELL_SIZE;
 const uint CELLS_OF_ALL = CELLS_A_SIDE * CELLS_A_SIDE * CELLS_A_SIDE;
-// Where nothing is visible, `near` is initially 0. Work is skipped by loop counts, never by branches.
+// `near` is initially 0, as where nothing is visible. Loop counts skip work; branches never do.
 const uint CELLS_OF_ONE = (CELLS_OF_ALL + OCCLUSION_SPLIT - 1u) / OCCLUSION_SPLIT;
 shared uint cells[CELLS_OF_ONE];
 shared uint cell_count;
@@ -51,8 +51,8 @@ ivec3 place(uint i, uint side)
     return ivec3(i % side, i / side % side, i / (side * side));
 }
 
-// Converts a position relative to the job's brick into a position in the brick that holds it, in voxels of that brick's
-// level.
+// Converts a position relative to the job's brick into a position relative to the brick that contains it, in voxels of
+// that brick's level.
 ivec3 in_brick_of(const OcclusionJob job, ivec3 voxel, int above)
 {
     return int(BRICK_SIZE) * ivec3(job.brick) + voxel >> above & int(BRICK_SIZE - 1u);
@@ -73,12 +73,12 @@ uint near_of(const OcclusionGatherParams params, const OcclusionJob job, ivec3 v
     const vec3 behind = vec3(code_at(texel + ivec3(1, 0, 0)), code_at(texel + ivec3(0, 1, 0)),
                              code_at(texel + ivec3(0, 0, 1)));
     const vec3 slope = (behind - before) / (2.0 * side);
-    // A voxel of a coarse brick covers several voxels of this level; this one lies so far from its centre.
+    // A voxel of a coarse brick covers several voxels of this level; this is the offset from that voxel's centre.
     const vec3 beside = vec3(voxel & int((1u << above) - 1u)) + 0.5 - 0.5 * side;
-    // Densities curve within a voxel, so their mean in it differs from the density at its centre by this much.
+    // Densities curve within a voxel: this is the difference of their mean from the density at its centre.
     const float bend = dot(before + behind - 2.0 * middle, vec3(0.125 / side));
     const float code = middle + dot(slope, beside) + bend;
-    // Ignores extremes beyond the neighbours: where the neighbours show nothing, cells are not occupied and never read.
+    // Ignores extremes beyond the neighbours: where neighbours show nothing, cells count as empty and are never read.
     const vec3 least = min(before, behind), most = max(before, behind);
     const float lower = min(middle, min(least.x, min(least.y, least.z)));
     const float upper = max(middle, max(most.x, max(most.y, most.z)));
@@ -90,7 +90,7 @@ uint near_of(const OcclusionGatherParams params, const OcclusionJob job, ivec3 v
 }
 
 #ifdef PAGED
-// The contribution of a coarser level's ramp to one of the cells that it covers, for the stretch of a tap of this
+// The part of a coarser level's ramp that lies in one of the cells it covers, for the stretch of a tap of this
 // level.
 uint part_of_ramp(uint packed, ivec3 cell, int above, float exponent)
 {
@@ -103,7 +103,7 @@ uint part_of_ramp(uint packed, ivec3 cell, int above, float exponent)
     return code == 0u ? 0u : bits;
 }
 
-// Converts the codes of a coarser level's cell to the stretch of a tap of this level.
+// Converts the codes of a coarser level's cell to the stretch of this level's taps.
 uint stretched(uint packed, float exponent)
 {
     const uvec3 code = uvec3(packed, packed >> 8u, packed >> 16u) & 255u;
@@ -112,8 +112,8 @@ uint stretched(uint packed, float exponent)
     return packed == 0u ? 0u : of_tap.x | of_tap.y << 8u | of_tap.z << 16u;
 }
 
-// Copies the cells of one size around the brick. `are_coarser`: copies only cells for which bricks of coarser levels
-// stand in; otherwise copies only the others.
+// Copies the cells of one size around the brick. `are_coarser`: copies only the cells for which a brick of a coarser
+// level stands in; otherwise copies only the other cells.
 void copy_cells(const OcclusionGatherParams params, const OcclusionJob job, uint size, bool are_coarser, uint end)
 {
     const int shift = int(size) + 1, apron = int(params.aprons[size]);
@@ -122,7 +122,7 @@ void copy_cells(const OcclusionGatherParams params, const OcclusionJob job, uint
     const ivec3 behind = ivec3(side * scratch_place(gl_WorkGroupID.x));
     for (uint i = 64u * gl_WorkGroupID.z + gl_LocalInvocationIndex; i < min(side * side * side, end);
          i += 64u * OCCLUSION_SPLIT) {
-        // Exact for these numbers; integer divisions are slow.
+        // Float arithmetic is exact for these numbers; integer division is slow.
         const uint row = uint((float(i) + 0.5) * inverse_side), z = uint((float(row) + 0.5) * inverse_side);
         const ivec3 texel = ivec3(i - side * row, row - side * z, z), voxel = texel - apron << shift;
         const uint entry = entry_at(params.reach, voxel >> 5);
@@ -170,7 +170,7 @@ void main()
     bool is_any_coarser = false;
     for (uint i = 0u; i < OCCLUSION_AROUND; ++i)
         is_any_coarser = is_any_coarser || (i < around_count(params.reach) && around[i] >> OCCLUSION_LEVEL_SHIFT > 0u);
-    // Loops that end at once skip rare work.
+    // Rare work is skipped by loops with a count of 0.
     const uint end_of_coarser = is_any_coarser ? ~0u : 0u;
     copy_cells(params, job, 0u, false, ~0u);
     copy_cells(params, job, 1u, false, ~0u);

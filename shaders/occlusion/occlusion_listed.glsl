@@ -1,5 +1,5 @@
-// Lists the voxels of a brick for which occlusion_bake.comp computes values: those next to which something is visible.
-// Needs that kernel's `params`, and the codes of voxels.
+// Lists the voxels of a brick for which occlusion_bake.comp computes values: those next to a visible voxel. Needs that
+// kernel's `params`, and the codes of voxels.
 
 const uint CELLS_OF_ONE = BRICK_CELLS * BRICK_CELLS * BRICK_CELLS / OCCLUSION_SPLIT;
 const uint VOXELS_OF_CELL = CELL_SIZE * CELL_SIZE * CELL_SIZE;
@@ -11,15 +11,15 @@ const uint APRONS_OF_ONE = 0u;
 #endif
 shared uint cells[CELLS_OF_ONE];
 shared uint cell_count;
-// Two voxels per entry, each as cell << 6 | voxel of the cell, or IN_APRON + number of the apron's voxel.
+// Two voxels per entry: cell << 6 | voxel of the cell, or IN_APRON + the number of a voxel in the apron.
 shared uint voxels[(CELLS_OF_ONE * VOXELS_OF_CELL + APRONS_OF_ONE + 1u) / 2u];
 shared uint voxel_count;
 const uint IN_APRON = 1u << 15u;
 
-// Whether any of these voxels is in an occupied cell, or with `grow` within one voxel of such a cell.
+// Whether any of these voxels is in an occupied cell or, with `grow`, within a voxel of one.
 bool any_cell_is_occupied(const OcclusionJob job, ivec3 first_voxel, ivec3 last_voxel)
 {
-    const int grow = int(params.grow), side = 1 + 2 * grow;   // equal for all lanes, so that loops do not diverge
+    const int grow = int(params.grow), side = 1 + 2 * grow;   // the same for all lanes, so that loops do not diverge
     const ivec3 first = first_voxel - grow >> 2, last = last_voxel + grow >> 2;
     bool found = false;
     for (int i = 0; i < side * side * side; ++i) {
@@ -35,7 +35,7 @@ ivec3 voxel_of(uint cell, uint lane)
 }
 
 #ifdef PAGED
-// Enumerates the voxels directly around the brick: two whole layers, and rings between them.
+// Enumerates the voxels directly around the brick: two whole layers, and the rings between these.
 ivec3 apron_voxel(uint number)
 {
     const uint side = BRICK_TEXELS, layer = side * side, ring = 4u * (side - 1u), inner = side - 2u;
@@ -49,7 +49,7 @@ ivec3 apron_voxel(uint number)
 }
 #endif
 
-// The position of a voxel's code, in the brick that contains it, which is present and of this level.
+// The texel of a voxel's code, in the brick that contains the voxel; this brick is present and of this level.
 ivec3 texel_of(const OcclusionJob job, ivec3 voxel)
 {
 #ifdef PAGED
@@ -59,8 +59,8 @@ ivec3 texel_of(const OcclusionJob job, ivec3 voxel)
 #endif
 }
 
-// Returns a bit for each of four voxels in a row: whether visible samples may read its value because the transfer
-// function shows something between its density and those around it. Ignores other reasons for visibility.
+// Returns a bit for each of four voxels in a row: whether visible samples may read the voxel's value because the
+// transfer function shows something between its density and the densities around it. Other reasons are ignored.
 uint shows_nearby(ivec3 texel)
 {
     vec4 lower = vec4(65535.0), upper = vec4(0.0);
@@ -85,7 +85,7 @@ void add_voxel(uint voxel)
     atomicAdd(voxels[at >> 1u], voxel << 16u * (at & 1u));
 }
 
-// Lists the voxels that are computed, in no particular order.
+// Lists the voxels to be computed, in no particular order.
 void list_voxels(const OcclusionJob job)
 {
     const uint lane = gl_LocalInvocationIndex;
@@ -101,7 +101,7 @@ void list_voxels(const OcclusionJob job)
         if (any_cell_is_occupied(job, first, first + 3)) cells[atomicAdd(cell_count, 1u)] = cell;
     }
     barrier();
-    // Loop counts are the same for all lanes; the loop that does not apply has a count of 0.
+    // Loop counts are the same for all lanes. One of the two loops is unused and has a count of 0.
     const uint found = cell_count, by_voxel = params.grow != 0u ? found : 0u;
     for (uint i = 0u; i < by_voxel; ++i) {
         const ivec3 voxel = voxel_of(cells[i], lane);
@@ -116,7 +116,7 @@ void list_voxels(const OcclusionJob job)
             if (index < found && (bits >> k & 1u) != 0u) add_voxel(cell << 6u | 4u * row + k);
     }
 #ifdef PAGED
-    // Excludes apron voxels that the neighbours list as their own.
+    // Excludes apron voxels that neighbours list as their own.
     for (uint i = OCCLUSION_SPLIT * lane + gl_WorkGroupID.z; i < APRON_VOXELS; i += 64u * OCCLUSION_SPLIT) {
         const ivec3 voxel = apron_voxel(i);
         const uint entry = entry_at(params.reach, voxel >> 5);

@@ -11,8 +11,8 @@ layout(binding = 8, scalar) readonly buffer GroupOpacities { float values[]; } g
 #include "../library/mask.glsl"
 #endif
 
-// Values at a code: its opacity, and sums of opacities and of their squares over the table's entries up to the code, in
-// two parts.
+// Values at a code: its opacity, and the sums, each in two parts, of opacities and of their squares over the table's
+// entries up to this code.
 struct Sums {
     float opacity;
     vec2 sums, rests;
@@ -33,14 +33,14 @@ float opacity_of(const OcclusionCellsParams params, float code)
     return sums_at(params, code).opacity;
 }
 
-// The fixed opacity that paint and the cut give a voxel, whatever its density; below 0: none. `centre` in voxels of
-// level 0.
+// The opacity that paint or the cut gives a voxel regardless of its density; below 0 if neither does. `centre` is in
+// voxels of level 0.
 float opacity_held(const OcclusionCellsParams params, vec3 centre)
 {
     const bool inside = all(greaterThanEqual(centre, params.lower)) && all(lessThan(centre, params.upper));
     float held = -1.0;
 #ifdef MASKED
-    // Clamped to the box; a voxel outside is transparent, whatever is read here.
+    // Clamped to the box; voxels outside the box are transparent in any case.
     const uvec3 painted = min(uvec3(max(centre, 0.0)), BRICK_SIZE * params.brick_counts - 1u);
     const uint slot = mask_slot_of(painted / BRICK_SIZE);
     if (slot != 0u) {

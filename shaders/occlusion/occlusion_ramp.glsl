@@ -1,14 +1,14 @@
 // Makes ramps (occlusion.h). Needs occlusion_opacity.glsl.
 
-// Constants found by optimization, like those of occlusion_bake.comp. A ramp is complete if the variance of the
-// opacity, for a top of 1, is above 1 / RAMP_UNEVEN.
+// Constants found by optimization, as in occlusion_bake.comp. A ramp has its full slope if the variance of the opacity,
+// for a top of 1, is above 1 / RAMP_UNEVEN.
 const float RAMP_UNEVEN = 230.0;
 // Maximum steepness of a ramp across the cube.
 const float STEEPEST_OF_VOXELS = 3.3, STEEPEST_OF_CELLS = 2.6;
 
-// `level`, `squares`: the means of the opacity in the cube and of its square, for a `top` of 1. `direction`: the
-// direction in which the opacity rises. If the ramp ends inside the cube, its width follows from the two means; if the
-// opacity hardly varies, there is no ramp inside.
+// `level`, `squares`: the means, over the cube, of the opacity and of its square, for a `top` of 1. `direction`: the
+// direction in which the opacity rises. If the ramp ends inside the cube, its width follows from these two means; if
+// the opacity hardly varies, there is no ramp.
 uint packed_ramp(float top, float level, float squares, vec3 direction, float steepest)
 {
     const float steepness = 1.0 / max(6.0 * (level - squares), 1.0 / steepest);
@@ -19,10 +19,10 @@ uint packed_ramp(float top, float level, float squares, vec3 direction, float st
     return code == 0u ? 0u : ramp_bits(code, height, slope);
 }
 
-// The ramp of a cube with a density at its centre, a slope across it, and densities between `least` and `most`.
+// The ramp of a cube, given the density at its centre, the slope across it, and its lowest and highest density.
 uint ramp_of(const OcclusionCellsParams params, float middle, vec3 slope, float least, float most, float steepest)
 {
-    // Assumes densities uniformly spread along the slope, within the cube's range of densities: exact along an axis.
+    // Assumes that densities are uniformly spread along the slope, within the cube's range; exact along an axis.
     const float steep = length(slope), half_width = max(0.5 * steep, 0.5 / params.table_scale);
     const float lower = middle - half_width, upper = middle + half_width;
     const float from = clamp(lower, least, most), to = clamp(upper, least, most);

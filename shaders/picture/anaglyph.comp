@@ -1,4 +1,4 @@
-// Combines red of one eye's picture with green and blue of the other's. One pixel per thread.
+// Combines red from one eye's picture with green and blue from the other's. One pixel per thread.
 #version 460
 
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
@@ -12,6 +12,6 @@ void main()
     const uvec2 at = gl_GlobalInvocationID.xy;
     if (any(greaterThanEqual(at, size))) return;
     const vec4 red = imageLoad(left, ivec2(at)), rest = imageLoad(right, ivec2(at));
-    // A pixel that is opaque for one eye is opaque for both.
+    // A pixel that is opaque for one eye is opaque in the result.
     imageStore(color, ivec2(target + at), vec4(red.r, rest.gb, max(red.a, rest.a)));
 }

@@ -1,6 +1,6 @@
-// Converts linear light, premultiplied, to 8-bit sRGB over an opaque colour, at original size or enlarged. One texel
-// per thread. At original size the result differs by at most one level of 255 from the file that engine/base/image.cpp
-// writes.
+// Converts premultiplied linear light to 8-bit sRGB over an opaque colour, at original size or enlarged. One texel per
+// thread. At original size, the result differs by at most one level of 255 from the file written by
+// engine/base/image.cpp.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

@@ -1,5 +1,5 @@
-// Mixes each pixel with that of another picture, in linear light, premultiplied. Equal pixels keep their bits. One
-// pixel per thread.
+// Mixes each pixel with the same pixel of another picture, in premultiplied linear light. Equal pixels keep their bits.
+// One pixel per thread.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

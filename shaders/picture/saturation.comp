@@ -1,5 +1,5 @@
-// Mixes each pixel with the grey of its luminance, in linear light, premultiplied. Greys and opacity keep their bits.
-// One pixel per thread.
+// Mixes each pixel with the grey of its luminance, in premultiplied linear light. Grey pixels and opacity keep their
+// bits. One pixel per thread.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -18,7 +18,7 @@ void main()
     if (any(greaterThanEqual(at, params.size))) return;
     const ivec2 texel = ivec2(params.target + at);
     const vec4 light = imageLoad(color, texel);
-    // Relative to green, so that rounding leaves equal channels equal.
+    // Computed relative to green, so that rounding keeps equal channels equal.
     precise float grey = light.g + LUMINANCE_OF_RED * (light.r - light.g) + LUMINANCE_OF_BLUE * (light.b - light.g);
     precise vec3 mixed = grey + params.saturation * (light.rgb - grey);
     imageStore(color, texel, vec4(mixed, light.a));

@@ -1,6 +1,6 @@
-// Like raycast.comp, but without steps whose length determines errors: integrates light, to rounding, between borders
-// of half voxels, points of the transfer function, and turns of the density (integral.glsl). For reference pictures.
-// Macros: see raycast.comp; FILTERED is left out, since a filter's rounding exceeds the errors that remain.
+// Like raycast.comp, but free of errors due to step length: integrates light, to rounding, between half-voxel borders,
+// points of the transfer function, and extrema of the density (integral.glsl). For reference pictures. Macros: see
+// raycast.comp; FILTERED is not supported, since a filter's rounding exceeds the remaining errors.
 // variants: PAGED MASKED OCCLUDED SURFACED SHELLED
 #version 460
 #extension GL_GOOGLE_include_directive : require

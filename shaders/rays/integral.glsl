@@ -1,20 +1,20 @@
 // The integral of light along a ray, to rounding. A ray is cut where its integrand is not smooth: at every half voxel,
-// where cells, voxels and the cells of central differences end; where the density turns; and where it passes a point of
+// where cells, voxels and the cells of central differences end; at extrema of the density ("turns"); and at points of
 // the transfer function. Between two half-voxel borders (a stretch), trilinear density is a cubic along the ray, so
-// turns and passed points are found exactly. Pieces in between are integrated by Gauss's formula of order 6; they are
-// at most an optical depth long, and are halved where the normal turns. Texels are read once for each stretch.
+// these places are found exactly. Pieces in between are integrated by Gauss's formula of order 6. A piece is at most an
+// optical depth long, and is halved where the normal turns. Texels are read once for each stretch.
 //
-// Steps (march.glsl) only limit the length of pieces, and are where dispatches and waiting rays divide the ray: a step
-// that reaches a missing brick is taken again. With SMOOTH_BORDERS labels are constant along a stretch.
+// Steps (march.glsl) limit the length of pieces. Dispatches and waiting rays divide the ray between steps, and a step
+// that reaches a missing brick is repeated. With SMOOTH_BORDERS, labels are constant along a stretch.
 //
 // Needs what march.glsl needs, and a table with points (raycast.h). Defines take_samples().
 
-// The part of a ray that lies in half a cell and in one step.
+// The part of a ray inside one half of a cell and inside one step.
 struct Stretch {
     float begin, extent;   // lengths along the ray
     Density density;       // of its middle
     Beyond there;
-    vec3 lattice;          // position in the lattice of voxel centres, minus the corner, at the beginning
+    vec3 lattice;          // position at the beginning, in the lattice of voxel centres, minus the corner
     vec3 along;            // the same at the end, minus `lattice`
     vec4 cubic;            // density at x = 0 ... 1: coefficients of 1, x, x^2, x^3
     uint group;
@@ -28,17 +28,17 @@ struct Stretch {
 const float SQRT_15 = 3.87298335;
 const vec3 GAUSS_AT = vec3(0.5 - 0.1 * SQRT_15, 0.5, 0.5 + 0.1 * SQRT_15);
 const vec3 GAUSS_WEIGHT = vec3(5.0, 8.0, 5.0) / 18.0;
-// Weights of the integrals from 0 to each node.
+// Quadrature weights of the integrals from 0 to each node.
 const mat3 GAUSS_UP_TO =
     mat3(vec3(5.0 / 36.0, 2.0 / 9.0 - SQRT_15 / 15.0, 5.0 / 36.0 - SQRT_15 / 30.0),
          vec3(5.0 / 36.0 + SQRT_15 / 24.0, 2.0 / 9.0, 5.0 / 36.0 - SQRT_15 / 24.0),
          vec3(5.0 / 36.0 + SQRT_15 / 30.0, 2.0 / 9.0 + SQRT_15 / 15.0, 5.0 / 36.0));
-const float MIN_THROUGH = 6e-8;   // 1 - opacity for densities just below an opaque one
+const float MIN_THROUGH = 6e-8;   // 1 - opacity at densities just below an opaque density
 const float MIN_PIECE = 0.002;    // reference lengths
-// A piece is halved if the normal turns by more than this along it, or if light or highlight begins or ends in it.
+// A piece is halved if the normal turns by more than this, or if light or highlight begins or ends within it.
 const float MIN_COSINE = 0.98;
 const uint HALVINGS = 6u;
-const float MIN_PART = 1e-3;      // of a stretch: shorter pieces are not halved, so that each one advances
+const float MIN_PART = 1e-3;      // in stretches: shorter pieces are not halved, so that each piece advances
 
 // -ln(1 - opacity), the optical depth of a reference length.
 float depth_of_opacity(float opacity)
@@ -53,7 +53,7 @@ float cubic_at(vec4 cubic, float x)
     return cubic.x + x * (cubic.y + x * (cubic.z + x * cubic.w));
 }
 
-// Where the cubic turns between 0 and 1, in order; 1 stands for no turn.
+// Where the cubic has extrema between 0 and 1, in order; 1 stands for none.
 vec2 turns_of(vec4 cubic)
 {
     const float a = 3.0 * cubic.w, b = 2.0 * cubic.z, c = cubic.y;
@@ -66,8 +66,8 @@ vec2 turns_of(vec4 cubic)
     return vec2(min(held.x, held.y), max(held.x, held.y));
 }
 
-// Where a cubic that rises or falls from `from` to `to` has a value between its values there. Uses Newton's method,
-// kept between bounds.
+// Where a cubic that is monotonic between `from` and `to` takes a value between its values there. Uses Newton's method,
+// kept inside bounds.
 float crossing_of(vec4 cubic, float value, float from, float to, bool rises)
 {
     float low = from, high = to;
@@ -93,7 +93,7 @@ float point_density(const RaycastParams params, int point)
     return imageLoad(table, table_texel(params.points + params.point_count + uint(point))).x;
 }
 
-// A line of the function: from a point to the next one. If `first` is -1 or the last point, it is outside.
+// A line between two successive points of the function. It is outside if `first` is -1 or the last point.
 struct Line {
     int first;
     float lower, upper;   // densities
@@ -101,11 +101,11 @@ struct Line {
     bool is_inside;
 };
 
-// The line that a density is on or, at a point, the line ahead: the one above the point if the density rises.
+// The line that contains a density. At a point, the line ahead: above the point if the density rises, else below.
 Line line_at(const RaycastParams params, float density, bool rises, bool is_constant)
 {
     const int last = max(int(params.point_count) - 1, 0);
-    int before = 0;   // number of points below, or at, the density
+    int before = 0;   // number of points below (or at) the density
     for (uint bit = 1u << uint(findMSB(max(params.point_count, 1u))); bit > 0u; bit >>= 1u) {
         const int next = before + int(bit);
         const float there = point_density(params, clamp(next - 1, 0, last));
@@ -114,7 +114,7 @@ Line line_at(const RaycastParams params, float density, bool rises, bool is_cons
     }
     Line line;
     line.first = before - 1;
-    // The last point itself is on the last line.
+    // The last point belongs to the line that ends there.
     if (is_constant && line.first == last && density == point_density(params, last)) line.first = last - 1;
     line.is_inside = line.first >= 0 && line.first < last;
     const int first = clamp(line.first, 0, last), second = clamp(line.first + 1, 0, last);
@@ -138,7 +138,7 @@ vec3 slope_at(const RaycastParams params, const Stretch stretch, float x)
     return gradient_between(there, stretch.there) * params.inverse_spacing;
 }
 
-// Whether the lighting differs too much between two gradients to integrate the stretch as a single piece.
+// Whether lighting at two gradients is so different that the piece between them must be halved.
 bool turns_much(const RaycastParams params, const Ray ray, vec3 a, vec3 b)
 {
     const float both = dot(a, b);
@@ -160,7 +160,7 @@ vec3 shaded_at(const RaycastParams params, const Ray ray, const Stretch stretch,
     return color;
 }
 
-// Light of the piece from x to x + width, on one line; in a group, both ends of `line` have the group's look.
+// Light of the piece from x to x + width, on one line; in a group, both ends of `line` are the group's look.
 vec4 light_of(const RaycastParams params, const Ray ray, const Stretch stretch, const Line line, float x, float width,
               float group_depth)
 {
@@ -186,7 +186,7 @@ void end_at(const RaycastParams params, const Ray ray, const Stretch stretch, fl
     march.sum.a = max(march.sum.a, 1.0);
 }
 
-// The next border of half a voxel along the ray. Rounding may put a border just reached ahead of, or behind, `s`.
+// The next half-voxel border along the ray. Rounding may put a border just reached slightly ahead of or behind `s`.
 float next_border(const Ray ray, float s)
 {
     const vec3 at = 2.0 * (ray.origin + s * ray.direction);
@@ -293,7 +293,7 @@ void add_stretch(const RaycastParams params, const Ray ray, const Stretch stretc
             work.shaded += is_seen && SHADED != 0u ? 2u : 0u;
         }
         if (!is_opaque && is_whole && crosses) {
-            // Of several points at one density, the last one applies.
+            // If several points have the same density, the last of them applies.
             const Line met = line_at(params, ahead, true, false);
             if (met.first >= 0 && met.from.a >= 1.0) end_at(params, ray, stretch, next, met.from.rgb, march);
         }
@@ -304,13 +304,13 @@ void add_stretch(const RaycastParams params, const Ray ray, const Stretch stretc
     } while (goes_on);
 }
 
-// The number of whole steps, from the step that begins at `position`, that lie in the empty cube around its cell.
+// The number of whole steps, from the step beginning at `position`, inside the empty cube around the cell.
 uint whole_steps_inside(const RaycastParams params, const Ray ray, vec3 position, const Place place)
 {
     return place.distance > 0u ? steps_to_leave(params, ray, position, place) - 1u : 0u;
 }
 
-// Adds the light of steps from `march.i` on, up to the length `until` along the ray or to the step `end_step`.
+// Adds the light of the steps from `march.i` on, up to length `until` along the ray or to step `end_step`.
 void take_samples(const RaycastParams params, const Ray ray, const Lattice lattice, uint end_step, float until,
                   inout March march, inout Work work)
 {

@@ -1,4 +1,4 @@
-// State of a ray that one dispatch stores for the next one (raycast.h, KEPT). Needs the constant KEPT.
+// State of a ray that a dispatch stores for the next dispatch (raycast.h, KEPT). Needs the constant KEPT.
 #if defined(PAGED) || defined(SHELLED)
 #define KEEPS
 layout(binding = 13, rgba32f) uniform image2D rays;   // KEPT_NOTHING: one texel
@@ -13,7 +13,7 @@ struct Kept {
 };
 
 #ifdef KEEPS
-// Returns the texel of the second half of a ray's state: it lies below the first half by the drawn part's height.
+// Returns the texel of the second half of a ray's state, below the first half by the drawn part's height.
 ivec2 second_half(const RaycastParams params, uvec2 in_part)
 {
     return ivec2(in_part.x, in_part.y + (params.pixel_end.y - params.pixel_begin.y));

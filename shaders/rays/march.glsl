@@ -1,6 +1,6 @@
 // Marching along a ray: samples lie in the middle of steps of equal length, on a lattice that starts where the ray
 // enters the drawn box; the last, shorter step has its own sample. Leaps go from lattice point to lattice point, so
-// pictures with and without skipping have the same bits. The number of steps is not limited: a long ray is drawn in
+// pictures with and without skipping have the same bits. The number of steps is unlimited: a long ray is drawn in
 // blocks of steps, one dispatch each, because some devices silently end a thread's loops after 65535 iterations.
 //
 // COMPENSATED: sums are compensated, since rounding errors would otherwise add up over many short steps.
@@ -21,14 +21,14 @@ const uint COMPENSATED = 1u;
 #else
 layout(constant_id = 17) const uint COMPENSATED = 0u;
 #endif
-// Linear RGB (PREINTEGRATED: times opacity) and opacity of a full step; then optical depths (raycast.h).
+// Linear RGB (PREINTEGRATED: times opacity) and opacity of a full step, followed by optical depths (raycast.h).
 layout(binding = 3, rgba32f) uniform readonly image2D table;
 
-// Maximum number of steps of a leap: even a leap from the last step (library/lattice.glsl) ends at a 32-bit index.
+// Maximum steps of a leap: even a leap from the last step (library/lattice.glsl) keeps the index within 32 bits.
 const float MAX_LEAP = 2147483648.0;
 const float NO_SHELL = 1e30;   // a length along a ray
-// Number of consecutive invisible samples after which a lane searches for the next visible one: LITTLE_PATIENCE if the
-// previous search was long, MUCH_PATIENCE if nearly every sample is visible, since all lanes wait while one searches.
+// A lane searches for the next visible sample after this number of consecutive invisible samples: LITTLE_PATIENCE after
+// a long search, MUCH_PATIENCE if most samples are visible, since all lanes wait while one lane searches.
 const uint AWAY_FROM_SEEN = 64u;
 const uint SAMPLES_OF_LEAP = 8u;   // counted as unseen
 const uint LITTLE_PATIENCE = 2u;
@@ -48,8 +48,8 @@ Work no_work()
 #include "../library/sample.glsl"
 #include "../library/lattice.glsl"
 
-// Counts a sample if it is taken. The last slot is assigned without a branch: if a lane leaves a loop before the
-// others, SwiftShader loses the values that this lane has set in a branch of the loop.
+// Counts a sample if it is taken. The last slot is assigned without a branch, because SwiftShader loses values that a
+// lane sets in a branch of a loop if the lane leaves the loop before the others.
 void note_sample(bool is_taken, const Place place, inout Work work)
 {
     work.samples += uint(is_taken);
@@ -57,14 +57,14 @@ void note_sample(bool is_taken, const Place place, inout Work work)
     work.last_slot = is_taken ? place.slot : work.last_slot;
 }
 
-// Counts a sample that is taken, and also counts it as shaded if SHADED is set.
+// Counts a sample that is taken; if SHADED, also counts it as shaded.
 void note_taken(const Place place, inout Work work)
 {
     note_sample(true, place, work);
     work.shaded += uint(SHADED != 0u);
 }
 
-// Returns the number of whole steps from `position` that stay inside the empty cube around the position's cell.
+// Returns the number of whole steps from `position` that stay inside the empty cube around its cell.
 uint steps_to_leave(const RaycastParams params, const Ray ray, vec3 position, const Place place)
 {
     const float reach = float(place.distance);
@@ -81,7 +81,7 @@ uint steps_to_leave(const RaycastParams params, const Ray ray, vec3 position, co
 #endif
     const vec3 lengths = (bound - position) * ray.inverse;
     const float exit = min(lengths.x, min(lengths.y, lengths.z));
-    // The guard keeps rays from leaping over a sample that rounding puts on the border.
+    // The guard ensures that rays do not leap over a sample on the border because of rounding.
     const float steps = exit / params.step - 0.01;
     return 1u + (steps > 0.0 && steps < MAX_LEAP ? uint(steps) : 0u);   // not for NaN
 }
@@ -102,7 +102,7 @@ void accumulate(inout vec4 sum, vec4 look)
     sum.a += weight;
 }
 
-// Like accumulate(), with compensated sums (Kahan 1965): `above` is the excess of the sum over its exact value.
+// Like accumulate(), but with compensated sums (Kahan 1965). `above`: excess of the sum over its exact value.
 void accumulate_compensated(inout vec4 sum, inout vec4 above, vec4 look)
 {
     const float weight = ((1.0 - sum.a) + above.a) * look.a;
@@ -119,7 +119,7 @@ void accumulate_compensated(inout vec4 sum, inout vec4 above, vec4 look)
 
 // A ray's accumulated state, and its position.
 struct March {
-    uint i;        // index of the next step: first the whole steps, then the shorter last step, then none
+    uint i;        // index of the next step: whole steps first, then the shorter last step, then the end
     vec4 sum;
     vec4 above;    // accumulate_compensated(), since the dispatch began
 #ifdef PICKS
@@ -128,10 +128,10 @@ struct March {
     uint unseen;   // consecutive samples that showed nothing
     bool waits;    // for a brick
     bool has_rest;
-    Sample rest;   // sample of the shorter last step, not added yet
+    Sample rest;   // sample of the shorter last step, before it is added
 };
 
-// Starts a march at `step`, with the sum that earlier dispatches have gathered.
+// Starts a march at `step`, with the sum gathered by earlier dispatches.
 March march_from(uint step, vec4 sum)
 {
     March march;
@@ -169,8 +169,8 @@ float value_at_begin(const RaycastParams params, const Ray ray, const Lattice la
     return value_at_end(params, ray, step_begin(params, lattice.begin, step), texels_at(position, place), place);
 }
 
-// Takes the sample of step `march.i`, whose middle is at `position`. `front`: on entry, the density at the beginning of
-// the step; on return, the density at its end.
+// Takes the sample of step `march.i`, whose middle is at `position`. `front`: on entry, the density at the step's
+// beginning; on return, the density at its end.
 void take_sample(const RaycastParams params, const Ray ray, const Lattice lattice, vec3 position, const Place place,
                  inout float front, inout March march, inout Work work)
 {
@@ -193,16 +193,16 @@ void take_sample(const RaycastParams params, const Ray ray, const Lattice lattic
     ++march.i;
 }
 
-// Adds samples from step `march.i` on, up to the length `until` along the ray, or up to `end_step`. The ray's
-// shorter last step is sampled here, too, but the caller adds that sample (add_rest), because its opacity requires
-// loads that no whole step needs.
+// Adds samples from step `march.i` on, up to the length `until` along the ray, or up to `end_step`. The ray's shorter
+// last step is also sampled here, but the caller adds its sample (add_rest), because its opacity requires loads that
+// whole steps do not need.
 //
-// SIMD devices run both sides of a branch for all their lanes, so the cheap part, the search for a visible sample, and
-// the costly part are separate loops, in which lanes stay together as long as it pays.
+// SIMD devices run both sides of a branch for all lanes. So the cheap search for a visible sample and the costly
+// sampling are separate loops, in which lanes stay together as long as this saves time.
 void take_samples(const RaycastParams params, const Ray ray, const Lattice lattice, uint end_step, float until,
                   inout March march, inout Work work)
 {
-    const uint first = march.i;   // this step is always taken, whatever rounding makes of `until`
+    const uint first = march.i;   // this step is always taken, even if `until` is rounded to before it
     bool is_behind = false;
     bool searches_on = march.i < end_step && march.sum.a < params.opacity_limit && !march.waits;
     if (searches_on) do {
@@ -213,7 +213,7 @@ void take_samples(const RaycastParams params, const Ray ray, const Lattice latti
         march.rises.trough = march.i > step_before ? 0.0 : march.rises.trough;
 #endif
         march.unseen = searches_on ? 0u : march.unseen;
-        // A step begins with the density at the previous step's end, if that end is in a brick of the same level.
+        // A step begins with the density at the end of the previous step, if that end is in a brick of the same level.
         const uint run = march.i;
         float front = PREINTEGRATED != 0u ? value_at_begin(params, ray, lattice, run) : 0.0;
         uint level = 0u;
@@ -239,7 +239,7 @@ void take_samples(const RaycastParams params, const Ray ray, const Lattice latti
             goes_on = goes_on && !march.waits && march.i < end_step && march.unseen < patience &&
                       march.sum.a < params.opacity_limit;
         } while (goes_on);
-        // The two loops may round differently: if they disagree about a border, neither advances, so force a step.
+        // The two loops may round a border differently, so that neither of them advances; this forces a step.
         march.i += uint(march.i == step_before && !march.waits && !is_behind);
         if (COUNT_WORK != 0u) ++work.turns;
         searches_on = march.i < end_step && march.sum.a < params.opacity_limit && !march.waits && !is_behind;
@@ -248,7 +248,7 @@ void take_samples(const RaycastParams params, const Ray ray, const Lattice latti
 
 #endif
 
-// Adds the sample of the ray's shorter last step, which take_samples() has found.
+// Adds the sample of the ray's shorter last step, taken by take_samples().
 void add_rest(const RaycastParams params, const Lattice lattice, inout March march)
 {
     if (march.has_rest) {
@@ -271,7 +271,7 @@ Block block_of(const RaycastParams params, const Lattice lattice)
     return block;
 }
 
-// Returns whether the device ended the loop before the march was done. The last block counts to the end of the ray.
+// Returns whether the device ended the loop too early. The last block counts as reaching the end of the ray.
 bool is_cut_short(const RaycastParams params, const Lattice lattice, const Block block, const March march)
 {
     return march.i < (block.is_last ? step_count(lattice) : block.end) && march.sum.a < params.opacity_limit &&

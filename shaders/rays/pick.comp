@@ -1,6 +1,6 @@
-// Finds what a person points at: stores the place along a pixel's ray where the opacity rises most (voxel space) and
-// the ray's opacity, or 0 if the rise is too small to be seen. Rays are those of raycast.comp, without their colours.
-// The target has PICK_ROWS rows (raycast.h). Macros: see volume.glsl.
+// Finds the point at which the user points: stores the place (in voxel space) where the opacity rises most along a
+// pixel's ray, and the ray's opacity, or 0 if the rise is too small to be seen. Rays are those of raycast.comp, without
+// their colours. The target has PICK_ROWS rows (raycast.h). Macros: see volume.glsl.
 // variants: PAGED FILTERED MASKED
 #version 460
 #extension GL_GOOGLE_include_directive : require

@@ -1,4 +1,4 @@
-// Finds the first voxel on each pixel's ray that a brush would change, as a solid cube; stores its lit colour and the
+// Finds the first voxel on each pixel's ray that a brush would change; stores the colour of its cube, lit, and the
 // length along the ray. If the voxel lies in front of other surfaces (surfaces.comp), the ray ends there, and `seen`
 // marks the pixel. In slices, stores the voxel half-way along the ray, unlit. One thread per pixel.
 //   SURFACED   there are other surfaces
@@ -57,7 +57,7 @@ struct Line {
     vec3 safe;          // the direction, nowhere 0
     vec3 inverse;       // 1 / safe
     float begin, end;   // lengths along the line: where it enters and leaves the box
-    ivec3 face;         // axis of the face through which the line enters; 0 if the line begins in the box
+    ivec3 face;         // axis of the face through which the line enters; 0 if it begins inside the box
 };
 
 Line line_through(const PreviewParams preview, vec3 near, vec3 far, float length_to_far)
@@ -79,12 +79,12 @@ Line line_through(const PreviewParams preview, vec3 near, vec3 far, float length
 struct Hit {
     bool is_hit;
     ivec3 voxel;
-    ivec3 face;   // signed axis along which the line enters the voxel; 0: the line begins in the voxel
+    ivec3 face;   // signed axis along which the line enters the voxel; 0: it begins in the voxel
     float at;     // length along the line
 };
 
-// Finds the first set voxel. Every variable that outlives an iteration is assigned in every iteration, without a
-// branch, because devices may run the loop until the last lane is done.
+// Finds the first set voxel. Every variable used after an iteration is assigned in every iteration, without a branch,
+// because devices may run the loop until its last lane is done.
 Hit first_hit(const PreviewParams preview, const Line line)
 {
     const ivec3 towards = ivec3(mix(vec3(-1.0), vec3(1.0), greaterThanEqual(line.safe, vec3(0.0))));
@@ -103,7 +103,7 @@ Hit first_hit(const PreviewParams preview, const Line line)
         hit.face = hit.is_hit ? hit.face : axis;
         hit.voxel = hit.is_hit ? hit.voxel : hit.voxel + axis * towards;
         next = hit.is_hit ? next : next + vec3(axis) * apart;
-        // same again: a lane that has left has hit, or goes ever farther beyond the end
+        // running this again changes nothing: a finished lane has hit a voxel, or moves farther beyond the end
         goes_on = !hit.is_hit && to < line.end && is_inside(preview, hit.voxel);
     } while (goes_on);
     count(COUNTER_CUT_SHORT, uint(goes_on));   // if a device aborts loops

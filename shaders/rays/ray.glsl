@@ -1,4 +1,4 @@
-// A pixel's ray, and the section of it inside the drawn box. Lengths along a ray are in reference lengths (raycast.h).
+// A pixel's ray, and its section inside the drawn box. Lengths along a ray are in reference lengths (raycast.h).
 #include "../library/rays.glsl"
 
 struct Ray {
@@ -7,15 +7,15 @@ struct Ray {
     vec3 inverse;     // 1 / direction; a large number if the direction is 0
     vec3 ahead;       // 1 if the direction is positive, else 0
     vec3 to_eye;      // unit, volume space
-    vec3 half_way;    // unit, between the directions to the eye and to the light; 0 where they are opposite
+    vec3 half_way;    // unit vector between the directions to the eye and to the light; 0 if these are opposite
 };
 
 struct Span {
     float begin, end;   // lengths along the ray
-    float to_far;       // length of the ray up to the far plane
+    float to_far;       // length along the ray to the far plane
 };
 
-// Returns a pixel's ray. Its `half_way` is 0: kernels that compute light set it.
+// Returns a pixel's ray. Kernels that compute light set `half_way`, which is 0 here.
 Ray ray_of(const RaycastParams params, uvec2 pixel, out Span span)
 {
     const vec2 centre = vec2(pixel) + 0.5;
@@ -32,7 +32,7 @@ Ray ray_of(const RaycastParams params, uvec2 pixel, out Span span)
     ray.inverse = mix(1.0 / ray.direction, vec3(1e30), still);
     ray.ahead = vec3(greaterThanEqual(ray.direction, vec3(0.0)));
 
-    // Slab test. Along an axis that the ray does not move on, only its origin is tested (0 / 0 does not matter there).
+    // Slab test. If the ray does not move along an axis, only its origin is tested there (0 / 0 does not matter).
     const vec3 a = (params.box_lower - near) / ray.direction;
     const vec3 b = (params.box_upper - near) / ray.direction;
     const vec3 entry = mix(min(a, b), vec3(0.0), still);
@@ -45,8 +45,8 @@ Ray ray_of(const RaycastParams params, uvec2 pixel, out Span span)
     return ray;
 }
 
-// Rounding may put a ray that runs along a face one ulp outside the volume. A position below 0 still truncates to voxel
-// 0; one above the upper limit is clamped.
+// Rounding may put a ray along a face one ulp outside the volume. A position below 0 still truncates to voxel 0; a
+// position above the upper limit is clamped.
 vec3 position_at(const RaycastParams params, const Ray ray, float s)
 {
     return min(ray.origin + s * ray.direction, params.position_limit);

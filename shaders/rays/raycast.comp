@@ -6,12 +6,12 @@
 //              compile its code before they drop it
 // variants: PAGED FILTERED MASKED OCCLUDED SURFACED SHELLED
 //
-// march.glsl describes where samples are, and why a ray is drawn in blocks of steps, one dispatch each. Between blocks
-// the target holds the sums of its rays. A ray that nevertheless stops short of its end is counted.
+// march.glsl describes where samples are, and why a ray is drawn in blocks of steps, one dispatch each. Between blocks,
+// the target holds the sums of the rays. A ray that nevertheless stops before its end is counted.
 //
-// If a ray passes more bricks than fit on the device, it waits (KEPT_ALL): it stops before a brick that is not on the
-// device, marks the brick, and continues in a later dispatch. The samples that a ray adds, and their order, do not
-// depend on where it stops.
+// If a ray passes more bricks than fit on the device, the ray waits (KEPT_ALL): it stops before a brick that is not on
+// the device, marks this brick, and continues in a later dispatch. The samples of a ray and their order do not depend
+// on where the ray stops.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

@@ -1,5 +1,5 @@
-// Draws pictures by rays: raycast.comp samples steps, and integral.comp, which defines INTEGRATED, integrates light
-// between borders. These two files list the macros. One pixel per thread.
+// Draws pictures by rays. Included by raycast.comp, which samples steps, and by integral.comp, which defines INTEGRATED
+// and integrates light between borders. These files list the macros. One pixel per thread.
 #include "../raycast.h"
 #ifdef OCCLUDED
 #include "../occlusion/occlusion.h"
@@ -11,22 +11,22 @@
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
 layout(constant_id = 0) const uint SHADED = 1u;
 layout(constant_id = 1) const uint COUNT_WORK = 0u;
-// Rows of bricks lie along x in memory, so a wider group of pixels uses more of each cache line on devices whose images
-// are linear.
+// Rows of bricks are contiguous along x, so a wider group of pixels uses more of each cache line on devices with linear
+// images.
 layout(constant_id = 2) const uint GROUP_WIDTH = 8u;
 layout(constant_id = 3) const uint SHININESS_SQUARINGS = NOT_A_POWER_OF_TWO;
-// Records which bricks rays visit. Complete pictures do not need it.
+// 1: records which bricks rays visit, which complete pictures do not need.
 layout(constant_id = 5) const uint FEEDBACK = 0u;
 layout(constant_id = 6) const uint DISTANCE_BLEND = 0u;
 #ifdef INTEGRATED
 const uint PREINTEGRATED = 0u;
 #else
-// 1: classifies a step by the densities at both of its ends. 2: likewise, and rays also end at some densities.
+// 1: classifies a step by the densities at its two ends. 2: the same, and rays also end at opaque densities.
 layout(constant_id = 9) const uint PREINTEGRATED = 0u;
 #endif
 layout(constant_id = 10) const uint KEPT = KEPT_NOTHING;
-// Assigns a sample to the group with the largest weight among the eight voxels around it, instead of to the group of
-// the nearest voxel.
+// 1: assigns a sample to the group with the largest weight among the eight voxels around it. 0: to the group of the
+// nearest voxel.
 layout(constant_id = 11) const uint SMOOTH_BORDERS = 0u;
 #ifdef SHELLED
 layout(constant_id = 8) const uint SHELL = SHELL_BALL;   // the region's shape
@@ -35,7 +35,7 @@ layout(binding = 19, r32ui) uniform readonly uimage3D cell_ranges;   // minimum 
 
 layout(binding = 4, rgba32f) uniform image2D color;
 #ifdef OCCLUDED
-// Ambient light follows a curve of points instead of a power function (occlusion.h).
+// 1: ambient light follows a curve of points instead of a power law (occlusion.h).
 layout(constant_id = 14) const uint OCCLUSION_MAPPED = 0u;
 layout(binding = 10, r8ui) uniform readonly uimage3D occlusion;
 layout(binding = 11, scalar) readonly buffer Look { OcclusionLook data; OcclusionSegment segments[]; } occlusion_look;
@@ -55,11 +55,11 @@ layout(binding = 12, rgba32f) uniform readonly image2D surfaces;   // linear RGB
 #endif
 #include "kept.glsl"
 
-// Alpha is never negative in a finished target; between blocks its sign tells whether the ray is inside the
-// iso-surface. Smaller magnitudes than this count as 0, whose sign devices may lose.
+// Alpha is never negative in a finished target. Between blocks, its sign tells whether the ray is inside the
+// iso-surface. Magnitudes below this count as 0, because devices may lose the sign of 0.
 const float MIN_ALPHA = 1e-30;
 
-// Returns the state that earlier dispatches have stored for a ray.
+// Returns the state that earlier dispatches stored for a ray.
 Kept resume(const RaycastParams params, uvec2 in_part, ivec2 texel)
 {
     Kept kept = Kept(vec4(0.0), vec2(NO_SHELL, -1.0), 0u, false, false);
@@ -75,7 +75,7 @@ Kept resume(const RaycastParams params, uvec2 in_part, ivec2 texel)
     return kept;
 }
 
-// Returns the range of a ray's steps that this dispatch takes. A ray that has waited continues at its own next step.
+// Returns the range of a ray's steps for this dispatch. A ray that has waited continues at its own next step.
 Block block_of(const RaycastParams params, const Lattice lattice, const Kept kept)
 {
     if (KEPT != KEPT_ALL) return block_of(params, lattice);
@@ -93,7 +93,7 @@ float end_of_block(const RaycastParams params, const Lattice lattice, const Bloc
 }
 
 #ifdef SHELLED
-// Draws crossings of the iso-surface. They are few, so this code is outside the loops that search and take samples.
+// Draws crossings of the iso-surface. Crossings are rare, so this is outside the loops that search and sample.
 void take_between_shells(const RaycastParams params, const Ray ray, const Lattice lattice, uint end_step,
                          inout Shell shell, inout March march, inout Work work)
 {

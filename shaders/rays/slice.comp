@@ -2,7 +2,7 @@
 // Macros: see volume.glsl.
 // variants: PAGED FILTERED MASKED
 //
-// Where bricks are paged, a ray may wait for the brick of its sample (raycast.h, KEPT_ALL).
+// PAGED: a ray may wait for the brick of its sample (raycast.h, KEPT_ALL).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -27,7 +27,7 @@ layout(binding = 4, rgba32f) uniform writeonly image2D color;
 #endif
 #include "kept.glsl"
 
-// Grey, perceptually uniform: the inverse of the curve with which pictures are encoded (IEC 61966-2-1).
+// Perceptually uniform grey: the inverse of the curve by which pictures are encoded (IEC 61966-2-1).
 vec4 slice_look(const RaycastParams params, float density)
 {
     const float grey = clamp((density - params.slice_black) * params.slice_scale, 0.0, 1.0);
@@ -44,7 +44,7 @@ vec4 painted(const RaycastParams params, uint group, vec4 look)
 }
 #endif
 
-// Shows the sample even where the transfer function hides it. The caller leaves out samples outside the view.
+// Shows the sample even if the transfer function hides it. The caller excludes samples outside the view.
 vec4 sliced(const RaycastParams params, vec3 position, out bool waits)
 {
     const Place place = brick_at(params, position);

@@ -1,9 +1,9 @@
 // Lists the surfaces that the rays of a tile may meet (surfaces.h): one thread per tile of SURFACE_TILE^2 pixels. The
-// rays of neighbouring pixels meet nearly the same surfaces, so that boxes are tested once per tile instead of once per
+// rays of neighbouring pixels meet nearly the same surfaces, so boxes are tested once per tile instead of once per
 // ray.
 //
 // All rays of a tile lie between the four planes through the tile's edges, whether the rays are parallel or come from
-// one point. A surface is left out only if all of it is behind one of the planes, by more than the rounding error.
+// one point. A surface is omitted only if all of it is behind one of these planes by more than the rounding error.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -20,8 +20,8 @@ const uint GROUP_WIDTH = 8u;   // tiles
 #include "../library/rays.glsl"
 #include "../library/surface_list.glsl"
 
-// Factor on the slack of boxes. It allows for normals that are off by a few ulps, over distances that the slack covers,
-// and for tiles that extend half a pixel beyond their rays.
+// Factor for the slack of boxes. Covers normals that are off by a few ulps, over distances that the slack covers, and
+// tiles that extend half a pixel beyond their rays.
 const float SLACKS = 8.0;
 
 struct Side {
@@ -29,7 +29,7 @@ struct Side {
     vec3 normal;   // unit, inwards
 };
 
-// `corner`: in pixels. `to_middle`: from the corner to the tile's centre. `edge`: direction of the tile's edge.
+// `corner`: in pixels. `to_middle`: from corner to centre of the tile. `edge`: direction of the tile's edge.
 Side side_of(const SurfaceParams scene, vec2 corner, vec2 to_middle, vec3 edge)
 {
     const vec3 along = scene.along_corner + corner.x * scene.along_dx + corner.y * scene.along_dy;
@@ -60,8 +60,8 @@ bool surface_may_be_met(const Side sides[4], const Surface surface, vec3 from, f
     return may;
 }
 
-// Returns the bits of the tile's blocks in which a surface may be met. `borders`: the first lies between the left and
-// the right blocks, the others lie between rows of blocks.
+// Returns the bits of those blocks of the tile whose rays may meet a surface. `borders`: the first is between left and
+// right blocks, the others are between rows of blocks.
 uint blocks_of(const Side borders[4], const Surface surface, vec3 from, float slack)
 {
     vec4 first, along;
@@ -122,6 +122,6 @@ void main()
         node = is_met ? node + 1u : box.skip;
         goes_on = node < scene.end_node && count <= SURFACES_IN_TILE;
     } while (goes_on);
-    // If the device has aborted the loop, marks the list as too long, so that rays search the boxes instead.
+    // If the device aborted the loop, marks the list as too long, so that rays search the boxes.
     imageStore(surface_tiles, counted, uvec4(node < scene.end_node ? SURFACES_IN_TILE + 1u : count));
 }

@@ -3,8 +3,8 @@
 //   LISTED   there is a list of surfaces, in addition to the probe
 // variants: LISTED
 //
-// If a tile meets few surfaces, its rays test those that surface_tiles.comp has listed for it; other rays search the
-// boxes. The result is the same, since the nearest surface counts, whatever the order of the tests.
+// If a tile meets few surfaces, its rays test the surfaces that surface_tiles.comp has listed for the tile; other rays
+// search the boxes. The result is the same, since the nearest surface counts, regardless of the order of the tests.
 //
 // Nodes are visited in blocks, one dispatch each, because some devices silently abort a thread's loops after 65535
 // iterations. Between blocks the target holds what a ray has met: its length, the surface's index in two parts, and
@@ -51,8 +51,8 @@ vec4 packed_hit(const Hit hit)
     return vec4(hit.at, float(hit.index / INDEX_PART), float(hit.index % INDEX_PART), float(hit.is_inside));
 }
 
-// Replaces the hit by this surface if its range begins earlier or, at equal lengths, if its number is lower, so that
-// the search order does not matter.
+// Replaces the hit by this surface if its range begins earlier or, at equal length, if its number is lower. The result
+// thus does not depend on the search order.
 void consider(vec2 range, float begin, uint number, uint index, inout Hit hit)
 {
     const float at = max(range.x, begin);
@@ -65,7 +65,7 @@ void consider(vec2 range, float begin, uint number, uint index, inout Hit hit)
 }
 
 #ifdef LISTED
-// Subtracts whole parts and rests separately: the first difference is exact near the origin, the second is small.
+// Subtracts whole parts and rests separately: the first difference is exact near the origin, the second small.
 vec3 from_origin(const SurfaceParams scene, const Surface surface)
 {
     precise vec3 whole = surface.from - scene.origin;
@@ -81,8 +81,8 @@ void meet(const SurfaceParams scene, const Line line, float begin, uint index, i
     consider(surface_range(surface, from, line.direction), begin, surface.number, index, hit);
 }
 
-// Every variable that outlives an iteration is carried through the loop: on devices that run the loop until the last
-// lane is done, lanes that have finished keep only such variables.
+// Every variable used after the loop is carried through it, because devices that run the loop until its last lane is
+// done keep only such variables of lanes that have finished.
 void search(const SurfaceParams scene, const Line line, float begin, uint first_node, inout Hit hit)
 {
     const vec3 safe = mix(line.direction, vec3(1e-20), lessThan(abs(line.direction), vec3(1e-20)));
@@ -110,9 +110,9 @@ uint listed_word(uvec2 tile, uint number)
     return imageLoad(surface_tiles, ivec2(surface_tile_texel(tile, 1u + number))).x;
 }
 
-// Returns the next entry of a tile's list, from `next` on, that rays of the pixel's block may meet. A separate loop:
-// SIMD devices run a test in full, even if no ray needs it, but skip the iterations of a loop that all lanes have left.
-// Lanes that run together belong to one block (library/rays.glsl).
+// Returns the next entry of a tile's list, from `next` on, that rays of the pixel's block may meet. This is a separate
+// loop because SIMD devices run a test in full even if no ray needs it, but skip iterations of a loop that all lanes
+// have left. Lanes that run together belong to one block (library/rays.glsl).
 uint next_in_block(uvec2 tile, uint block, uint next, uint count)
 {
     while (next < count && (listed_word(tile, next) >> block & 1u) == 0u) ++next;
@@ -151,7 +151,7 @@ vec3 look_of(const RaycastParams params, const SurfaceParams scene, const Line l
 #ifdef LISTED
     if (hit.index != PROBE_INDEX) {
         const Surface surface = surface_at(hit.index);
-        // Computed as in surface_range: from the line's point nearest to the surface.
+        // Computed from the line's point nearest to the surface, as in surface_range.
         const vec3 from = from_origin(scene, surface) - line.origin;
         const float shift = dot(from + 0.5 * surface.along, line.direction);
         const vec3 point = (hit.at - shift) * line.direction - (from - shift * line.direction);
@@ -181,7 +181,7 @@ void main()
     const float begin = (scene.begin - scene.middle) * length_to_far;
     const float end = (scene.end - scene.middle) * length_to_far;
 
-    Hit hit = Hit(end, false, 0u, PROBE_INDEX);  // nothing is nearer than the far plane itself
+    Hit hit = Hit(end, false, 0u, PROBE_INDEX);  // initial hit: the far plane, which only nearer surfaces replace
 #ifdef LISTED
     const uint count = imageLoad(surface_tiles, ivec2(surface_tile_texel(in_part / SURFACE_TILE, 0u))).x;
     const bool is_listed = count <= SURFACES_IN_TILE;

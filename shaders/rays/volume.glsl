@@ -1,5 +1,5 @@
-// The volume that rays pass: its bindings, and the brick and texel of a position. Needs KEPT and COUNT_WORK. Macros
-// determine the bindings:
+// The volume through which rays pass: its bindings, and how the brick and texel of a position are found. Needs KEPT and
+// COUNT_WORK. Macros determine the bindings:
 //   FILTERED   the atlas is sampled by the device's filter instead of exact arithmetic
 //   MASKED     there is a segmentation mask; an unpainted volume binds and fetches none of it
 //   PAGED      paged bricks of several levels (pages.h), instead of a leap grid over resident bricks
@@ -22,7 +22,7 @@ layout(binding = 2, r32ui) uniform readonly uimage3D atlas;
 #ifdef MASKED
 layout(binding = 5, r8ui) uniform readonly uimage3D mask;
 #define MASK_TABLE_BINDING 6
-// Indexed by group: linear RGB and opacity of a full step; in the second row, the optical depth of a full step.
+// Row 0, by group: linear RGB and opacity of a full step. Row 1, by group: optical depth of a full step.
 layout(binding = 7, rgba32f) uniform readonly image2D groups;
 #ifdef PAGED
 #define MASK_TABLE_HASHED
@@ -43,7 +43,7 @@ uint density_reads = 0u;
 #ifdef PAGED
 #include "../library/pages.glsl"
 #else
-// The region that contains a position: a brick, or an empty region with nothing visible (distance > 0).
+// The region that contains a position: a brick, or a region with nothing visible (distance > 0).
 struct Place {
     uint distance;   // in cells
     uint slot;

@@ -1,4 +1,4 @@
-// The forest of runs. Needs `bits` (words) and `parents` (one uint per bit, valid at first bits of runs).
+// The union-find forest of runs. Needs `bits` (words) and `parents` (a uint per bit, used at first bits of runs).
 
 // Returns the first bit of the run in `word` that contains `bit`.
 uint run_start(uint word, uint bit)
@@ -11,7 +11,7 @@ uint find_root(uint run)
 {
     uint parent = parents.of[run];
     while (parent != run) {
-        run = parent;   // same again: a root is its own parent
+        run = parent;   // running this again changes nothing: a root is its own parent
         parent = parents.of[run];
     }
     return run;

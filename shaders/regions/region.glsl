@@ -1,4 +1,4 @@
-// Code that the region kernels share: one thread per word. Needs `params` (RegionParams).
+// Code shared by the region kernels, with one thread per word. Needs `params` (RegionParams).
 
 uint word_index(uvec3 word)
 {

@@ -1,4 +1,4 @@
-// One word per thread: sets the bits of voxels at or above the threshold; every run starts as its own root.
+// One word per thread: sets the bits of voxels at or above the threshold; every run of bits becomes a root.
 // FILTERED: reads the atlas made for the device's filter.
 // variants: FILTERED
 #version 460

@@ -1,4 +1,4 @@
-// One word per thread: marks the roots of components that hold an edge voxel (one with a face neighbour outside).
+// One word per thread: marks roots of components that contain an edge voxel (one with a face neighbour outside).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

@@ -1,4 +1,4 @@
-// One word per thread: connects the word's runs with touching runs in earlier words (3 of 6 or 13 of 26 neighbours).
+// One word per thread: connects the word's runs to touching runs before it (3 of 6 or 13 of 26 neighbours).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -12,22 +12,22 @@ layout(binding = 1, scalar) coherent buffer Parents { uint of[]; } parents;
 #include "forest.glsl"
 #include "region.glsl"
 
-// Like find_root, but halves the path for later searches: chains stay short, however convoluted a component is. Other
-// threads link roots concurrently: a stale parent is still an ancestor, since parents only decrease, and the atomic in
-// `unite` decides.
+// Like find_root, but halves the path for later searches, which keeps chains short in components of any shape. Other
+// threads link roots concurrently. A stale parent is still an ancestor, since parents only decrease, and the atomic
+// operation in `unite` decides.
 uint find_root_halving(uint run)
 {
     uint parent = parents.of[run];
     while (parent != run) {
         const uint above = parents.of[parent];
         if (above != parent) atomicMin(parents.of[run], above);
-        run = parent;   // same again: a root is its own parent
+        run = parent;   // running this again changes nothing: a root is its own parent
         parent = above;
     }
     return run;
 }
 
-// Links the higher root below the lower one; retries if another thread has moved a root meanwhile.
+// Links the higher root below the lower one. Retries if another thread has linked a root meanwhile.
 void unite(uint a, uint b)
 {
     a = find_root_halving(a);
@@ -48,19 +48,19 @@ uint word_at(ivec3 word)
     return bits.words[word_index(uvec3(word))];
 }
 
-// Unites the runs of `word` at `here` with the runs that lie at (x + dx, y + dy, z + dz), dx in -1 ... 1.
+// Unites the runs of `word` at `here` with the runs at (x + dx, y + dy, z + dz), for dx in -1 ... 1.
 void unite_with_row(ivec3 here, uint word, int dx, int dy, int dz)
 {
     const ivec3 row = here + ivec3(0, dy, dz);
     const uint middle = word_at(row);
-    // Bit b of `shifted` is the neighbour of bit b.
+    // Bit b of `shifted` is the neighbour of bit b in the other row.
     uint shifted = middle;
     if (dx < 0) shifted = middle << 1 | word_at(row - ivec3(1, 0, 0)) >> 31;
     if (dx > 0) shifted = middle >> 1 | word_at(row + ivec3(1, 0, 0)) << 31;
     const uint touching = word & shifted;
     for (uint starts = touching & ~(touching << 1); starts != 0u; starts &= starts - 1u) {
         const int bit = findLSB(starts);
-        const int other = bit + dx;   // -1 ... 32: the bit may be in a neighbouring word
+        const int other = bit + dx;   // -1 ... 32, so the bit may be in a neighbouring word
         const ivec3 other_word = row + ivec3(other < 0 ? -1 : other > 31 ? 1 : 0, 0, 0);
         const uint other_bits = word_at(other_word);
         const uint mine = word_index(uvec3(here)) * 32u + run_start(word, uint(bit));

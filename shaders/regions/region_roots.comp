@@ -1,5 +1,5 @@
-// Prepares bits that were made elsewhere (for touch: bits of any level, from the device or the host) for the labelling
-// of a region: clears bits beyond the end of a row, and makes every run its own root. One word per thread.
+// Prepares bits from elsewhere (for touch: bits of any level, from the device or the host) for the labelling of a
+// region: clears bits beyond the end of a row, and makes every run its own root. One word per thread.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

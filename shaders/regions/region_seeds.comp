@@ -1,5 +1,5 @@
-// One word per thread: marks the roots of components that hold a seed. A seed is a set voxel of the region that is also
-// set in the box of bits of the previous object; this box may be anywhere relative to the region.
+// One word per thread: marks roots of components that contain a seed. A seed is a set voxel of the region that is also
+// set in the previous object's bits; the box of these bits may be anywhere relative to the region.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -15,7 +15,7 @@ layout(binding = 3, scalar) buffer Marked { uint words[]; } marked;   // one bit
 #include "forest.glsl"
 #include "region.glsl"
 
-// Returns a word of the seeds' row; bits beyond the row's end are not voxels.
+// Returns a word of the seeds' row, without bits beyond the row's end.
 uint seed_word(int word, int row)
 {
     if (word < 0 || word >= int(params.seed_words_per_row)) return 0u;

@@ -1,5 +1,5 @@
-// One word per thread: keeps one of three sets of runs: those of the seed's component, those with an unmarked root, or
-// those with a marked root.
+// One word per thread: keeps the runs of the seed's component, the runs with an unmarked root, or the runs with a
+// marked root.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

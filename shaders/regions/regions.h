@@ -1,7 +1,7 @@
 // Brushes: declarations that the region and labelling kernels share with C++.
 //
 // A region's voxels are bits: 32 along x in one word, rows of `words_per_row` words, y next, z last. A run is a maximal
-// sequence of set bits within one word; it is identified by the index of its first bit, and the forest of runs is
+// sequence of set bits within one word, identified by the index of its first bit. The union-find forest of runs is
 // stored in one uint per bit.
 //   region_bits    bit = density code >= threshold, within the row's span
 //   region_merge   connects each run with the runs before it (union-find with atomic minimum; Komura 2015, Playne and
