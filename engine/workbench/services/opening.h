@@ -19,10 +19,10 @@ struct Opener::Opening {
     Jobs::Number number = 0;                       ///< number of the reading job, which the opening keeps afterwards
     std::shared_ptr<Document::Read> read{};        ///< null: still being read
     std::shared_ptr<std::exception_ptr> thrown{};  ///< exception from the job
-    uint64_t journal_bytes = 0;  ///< size of the open document's journal when reading began
-    std::optional<Session> pictured{};  ///< if the opened file is a picture: its look
-    std::string looks_like_labels{};    ///< as in OpeningModel
-    std::unique_ptr<Scene> scene{};     ///< scene being loaded
+    uint64_t journal_bytes = 0;                    ///< size of the open document's journal when reading began
+    std::optional<Session> pictured{};             ///< if the opened file is a picture: its look
+    std::string looks_like_labels{};               ///< as in OpeningModel
+    std::unique_ptr<Scene> scene{};                ///< scene being loaded
 };
 
 }  // namespace shvr::ui

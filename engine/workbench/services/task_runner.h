@@ -17,7 +17,7 @@ public:
     struct Others {
         Call<void(const Jobs::Finished&)> end_save;
         Call<bool(const Jobs::Finished&)> end_reading;  ///< returns whether the job was the reading job of an opening
-        Call<bool(Jobs::Number)> cancel;                ///< cancels another service's job; returns whether it is one
+        Call<bool(Jobs::Number)> cancel;                ///< cancels another service's job; returns whether it was found
         Call<void(std::vector<Jobs::State>&)> add_loading;
         Call<void(std::vector<Jobs::State>&)> add_reading;
         Call<void(const std::filesystem::path&)> open;

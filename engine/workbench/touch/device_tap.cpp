@@ -47,7 +47,7 @@ void TapLink::note_now(uint64_t now_ns) noexcept
 
 void TapLink::note_read(ReadResult result, const DeviceState& state) noexcept
 {
-    // The result as the servo sees it: after a failed write, the device is lost unless it reports a new state.
+    // Stores the result as the servo sees it: after a failed write, a device is lost until it reports a new state.
     now_.tick.read = !was_written_ && result != ReadResult::fresh ? ReadResult::lost : result;
     now_.tick.state = state;
     if (const Latest<RelevancePatch>* const relevance = relevance_.load(std::memory_order_acquire)) {

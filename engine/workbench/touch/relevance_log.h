@@ -13,7 +13,7 @@ namespace shvr::ui {
 
 class RelevanceLog {
 public:
-    /// Maximum number of entries waiting to be taken; further ones are dropped. Lasts for eight seconds of the mirror.
+    /// Maximum number of waiting entries; further ones are dropped. It is reached after eight seconds at the earliest.
     static constexpr size_t MAX_ENTRIES = 1024;
 
     /// Main thread, before and after a recording
