@@ -11,7 +11,7 @@ namespace shvr {
 
 struct BrickKey {
     int level = 0;
-    glm::ivec3 brick{0};  ///< position in bricks of gpu::BRICK_SIZE voxels a side; at most 2^15 along an axis
+    glm::ivec3 brick{0};  ///< position in bricks of gpu::BRICK_SIZE voxels a side; at most 2^15 along each axis
     bool operator==(const BrickKey&) const = default;
 };
 
@@ -36,7 +36,7 @@ inline VoxelBox voxels_of(const BrickKey& key, const Size3& size)
     return {side * Size3(key.brick), glm::min(side * (Size3(key.brick) + int64_t{1}), size)};
 }
 
-/// Calls visit(key) for a brick and its 26 neighbours, some of which may lie outside the volume.
+/// Calls visit(key) for a brick and its 26 neighbours, also for neighbours outside the volume.
 template <class Visit>
 void for_each_around(const BrickKey& key, const Visit& visit)
 {

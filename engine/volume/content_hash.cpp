@@ -14,9 +14,9 @@ namespace shvr {
 namespace {
 
 constexpr int64_t PIECE_BYTES = int64_t{16} << 20;
-/// If a volume has more blocks, they are not listed; all slices are read.
+/// If a volume stores more blocks than this, they are not listed, and all slices are read.
 constexpr int64_t MAX_BLOCKS_LISTED = int64_t{1} << 20;
-/// Limits hashing to minutes; longer hashing would seem to hang.
+/// Limit of the bytes to read (2^38), which takes minutes. Longer hashing would look like a hang.
 constexpr double MAX_BYTES_HASHED = 274877906944.0;
 constexpr double CHUNK_VOXELS = double(STORED_CHUNK * STORED_CHUNK * STORED_CHUNK);
 constexpr const char* SLICES = "xxh3-128:";
@@ -96,7 +96,7 @@ HashKind kind_for(const VolumeInfo& info, int64_t varied_chunks)
 
 namespace {
 
-/// Hashes slices in pieces: rows, or parts of rows, of one or more slices. So pieces stay small for rows of any length.
+/// Hashes slices in pieces (rows, or parts of rows, of one or more slices), which stay small for rows of any length.
 void hash_slab(const VolumeSource& source, int64_t lower, int64_t upper, std::vector<SliceHash>& hashes)
 {
     const Size3 size = source.info().size;
@@ -118,7 +118,7 @@ void hash_slab(const VolumeSource& source, int64_t lower, int64_t upper, std::ve
     for (SliceHasher& hasher : hashers) hashes.push_back(hasher.finish());
 }
 
-/// Returns for each slice whether something may be stored in it.
+/// Returns for each slice whether the source may store something in it.
 std::vector<bool> stored_slices(const VolumeSource& source)
 {
     const Size3 size = source.info().size;
@@ -135,7 +135,7 @@ std::vector<bool> stored_slices(const VolumeSource& source)
 std::string hash_in_slices(const VolumeSource& source, const std::vector<bool>& is_stored)
 {
     const Size3 size = source.info().size;
-    const int64_t step = std::min(size.z, source.block().z);  // whole blocks, so that no block is decoded twice
+    const int64_t step = std::min(size.z, source.block().z);  // reads whole blocks, so that none is decoded twice
     std::vector<SliceHash> hashes;
     std::vector<SliceHash> empty;
     for (int64_t z = 0; z < size.z; z += step) {
@@ -192,7 +192,7 @@ void ChunkHasher::add(const Size3& chunk, const std::byte* voxels, size_t row_by
         for (int64_t y = 0; y < extent.y; ++y) {
             const std::byte* const row = voxels + size_t(z) * slice_bytes + size_t(y) * row_bytes;
             hasher.add({row, length});
-            // If all voxels of a row equal the chunk's first voxel, the row equals itself shifted by one voxel.
+            // A row that starts with `voxel` and equals itself shifted by one voxel consists of equal voxels.
             const bool is_uniform = std::memcmp(row, voxels, voxel_bytes) == 0 &&
                                     std::memcmp(row, row + voxel_bytes, length - voxel_bytes) == 0;
             if (!is_uniform) digest.is_varied = 1;

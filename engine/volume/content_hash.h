@@ -22,7 +22,7 @@ namespace shvr {
 
 using SliceHash = std::array<std::byte, 16>;
 
-/// Computes the hash of one slice, whose rows arrive in order, in pieces. One thread at a time.
+/// Computes the hash of one slice at a time. Rows must arrive in order, and may arrive in pieces. One thread at a time.
 class SliceHasher {
 public:
     SliceHasher();
@@ -41,23 +41,23 @@ private:
 std::string content_hash(std::span<const SliceHash> slices);
 
 enum class HashKind { slices, chunks };
-/// Returns the kind, from the hash's prefix; null if the text is no such hash.
+/// Returns the kind that the hash's prefix states; null if the text is no such hash.
 std::optional<HashKind> kind_of(std::string_view hash);
-/// Volumes of up to this many voxels are hashed in slices, which happens while they are measured.
+/// Volumes of up to this many voxels always have a hash in slices, which is computed while they are measured.
 inline constexpr int64_t MAX_VOXELS_IN_SLICES = MAX_VOXELS_EXACT;
-/// The kind of a volume: chunks if it exceeds that limit and at most an eighth of its chunks has differing voxels.
+/// Returns the kind for a volume: chunks if it is larger than that and at most an eighth of its chunks is not uniform.
 HashKind kind_for(const VolumeInfo& info, int64_t varied_chunks);
 
-/// Collects the contributions of chunks to a hash in chunks, in any order. Any thread may add.
+/// Collects the digests of chunks for a hash in chunks, in any order. Any thread may add.
 class ChunkHasher {
 public:
     explicit ChunkHasher(const VolumeInfo& info);
 
-    /// `voxels`: first voxel of the chunk; its rows and slices lie `row_bytes` and `slice_bytes` apart.
+    /// `voxels`: the first voxel of the chunk. Rows lie `row_bytes` apart, and slices `slice_bytes` apart.
     void add(const Size3& chunk, const std::byte* voxels, size_t row_bytes, size_t slice_bytes);
     /// Returns the number of chunks whose voxels are not all equal.
     int64_t varied() const;
-    /// `rest`: the value of all voxels in all chunks that were not added.
+    /// `rest`: the value of all voxels in chunks that were not added.
     std::string hash(std::span<const std::byte> rest) const;
 
     struct Digest {
@@ -74,17 +74,17 @@ private:
     std::vector<Digest> digests_;
 };
 
-/// Hashes level 0 in slices. Slices in which nothing is stored are equal, and hashed only once. Any thread may call it.
+/// Hashes level 0 in slices. All slices in which nothing is stored are equal, and are hashed only once. Any thread.
 std::string content_hash(const VolumeSource& source);
-/// Computes the hash of the given kind. Null if that would read more than 2^38 bytes.
+/// Computes the hash of the given kind. Returns null if more than 2^38 bytes would have to be read.
 std::optional<std::string> content_hash(const VolumeSource& source, HashKind kind);
-/// Whether two hashes name the same voxels; `known` is the hash of `source`. If `stated` is of another kind, reads the
-/// source to compute that kind. If `source` is null, hashes of different kinds count as different.
+/// Whether two hashes are of the same voxels; `known` is the hash of `source`. If `stated` is of the other kind, reads
+/// the source to compute that kind; if `source` is null, the result is then false.
 bool is_same_content(const std::string& stated, const std::string& known, const VolumeSource* source);
 
-/// Forwards to another source, which must outlive this object, and hashes the voxels of level 0 that `read` returns.
-/// Callers must read whole rows, each once and in order, one or more slices per call. `content_hash` does so, and so
-/// does `measure` when it reads the whole volume. One thread at a time.
+/// Forwards to another source, which must outlive this object, and hashes the voxels of level 0 that pass through
+/// `read`. Callers must read whole rows, each once and in order, one or more slices per call, as `content_hash` does,
+/// and as `measure` does if it reads the whole volume. One thread at a time.
 class HashedSource final : public VolumeSource {
 public:
     explicit HashedSource(const VolumeSource& source);
@@ -100,7 +100,7 @@ public:
         return source_.stored_blocks(level, most);
     }
     std::optional<VolumeStatistics> statistics() const override { return source_.statistics(); }
-    /// Returns the hash; empty unless all slices have been read. Later reads are not hashed.
+    /// Returns the hash; empty unless all slices have been read. Reads after that are not hashed.
     std::string hash() const;
 
 private:
@@ -108,7 +108,7 @@ private:
     mutable std::vector<SliceHasher> hashers_;  ///< one per slice being read
     mutable std::vector<SliceHash> slices_;     ///< hashes of the completed slices
     mutable int64_t rows_ = 0;                  ///< rows read of the current slices
-    mutable bool is_out_of_order_ = false;      ///< if true, further reads are not hashed
+    mutable bool is_out_of_order_ = false;      ///< if true, later reads are not hashed
 };
 
 }  // namespace shvr

@@ -10,14 +10,14 @@
 namespace shvr {
 namespace {
 
-/// Returns the size of the file's blocks, or of slices if it has no blocks.
+/// Returns the size of the file's blocks. For a file without blocks: the size of a slice.
 Size3 piece_of(const VolumeSource& source)
 {
     const Size3 size = source.info().size, block = source.block();
     return block == Size3(1) ? Size3(size.x, size.y, 1) : glm::min(block, size);
 }
 
-/// Visits each piece that meets the box, with the part of the piece that lies in the box.
+/// Visits each piece that intersects the box, together with their intersection.
 template <class Visit>
 void for_each_piece(const VoxelBox& box, const Size3& piece, const Visit& visit)
 {
@@ -54,7 +54,7 @@ void Gaps::add(const VoxelBox& block, const std::string& reason)
 {
     const std::scoped_lock lock(mutex_);
     if (voxels_.empty()) first_reason_ = reason;
-    // This number is unique for each voxel of a volume of up to 2^20 voxels a side.
+    // A key that is unique for each voxel of volumes of up to 2^20 voxels a side.
     const int64_t first = (block.lower.z << 40) + (block.lower.y << 20) + block.lower.x;
     if (voxels_.try_emplace(first, count_of(block)).second) sum_ += count_of(block);
 }
@@ -106,7 +106,7 @@ void GapSource::read(const VoxelBox& box, std::span<std::byte> voxels) const
     const Size3 extent = box.size();
     std::vector<std::byte> pieces;
     bool is_whole = false;
-    // If the box is read as a whole, its voxels are already in place; single pieces must be copied.
+    // If the whole box could be read, its voxels are already in `voxels`; otherwise the readable pieces are copied.
     const auto take = [&](const VoxelBox& part, std::span<const std::byte> read) {
         is_whole = part.lower == box.lower && part.upper == box.upper;
         if (is_whole) return;

@@ -1,6 +1,6 @@
 #pragma once
-// Handles volumes with unreadable parts, such as a truncated chunk. The work either ends with a message, or continues
-// without the unreadable part, counts it, and reports it.
+// Handles volumes with unreadable parts, such as a truncated chunk. Work on such a volume either ends with a message,
+// or continues without these parts (gaps), which it counts and reports.
 
 #include <atomic>
 #include <functional>
@@ -12,42 +12,42 @@
 
 namespace shvr {
 
-/// The unreadable parts of one volume. Each block counts once, however often reading it is tried. Any thread.
+/// The unreadable parts of one volume. Each block counts once, however often a read of it fails. Any thread.
 class Gaps {
 public:
-    /// `refused_with`: advice for the user, added to the error with which a gap ends the work; empty: work continues.
+    /// `refused_with`: if not empty, a gap ends the work with an error, to which this advice for the user is added.
     explicit Gaps(std::string refused_with = {}) : refused_with_(std::move(refused_with)) {}
 
-    /// Throws an `Error` with the reason if gaps are refused.
+    /// Throws an `Error` with the reason if gaps end the work.
     void expect_none(const std::string& reason) const;
     /// Counts a whole block as missing, even if the error concerned only part of it.
     void add(const VoxelBox& block, const std::string& reason);
     bool empty() const { return voxels() == 0; }
-    /// Returns whether `expect_none` has thrown an error with the reason and the advice.
+    /// Returns whether `expect_none` has already thrown.
     bool has_refused() const { return has_refused_; }
     int64_t voxels() const;
-    /// Returns a message with the number of missing voxels and the first reason; empty if none is missing.
+    /// Returns a message with the number of missing voxels and the first reason; empty if no voxel is missing.
     std::string in_words() const;
 
 private:
     std::string refused_with_;
     mutable std::atomic<bool> has_refused_ = false;
     mutable std::mutex mutex_;
-    std::unordered_map<int64_t, int64_t> voxels_;  ///< number of missing voxels per block, by the block's first voxel
+    std::unordered_map<int64_t, int64_t> voxels_;  ///< number of missing voxels of a block, by its first voxel
     int64_t sum_ = 0;
     std::string first_reason_;
 };
 
-/// Reads a box of level 0 into `voxels`, and passes on every readable part: the whole box, or else blocks of the file,
-/// or slices if the file has no blocks. Adds unreadable parts to `gaps`; without `gaps`, throws the first failure.
-/// Always throws `Stopped`.
+/// Reads a box of level 0 into `voxels`, and calls the callback with every readable part: the whole box if possible,
+/// otherwise blocks of the file (slices if it has no blocks). Adds unreadable parts to `gaps`. Without `gaps`, throws
+/// the first error. `Stopped` is always thrown on.
 using TakePart = std::function<void(const VoxelBox& part, std::span<const std::byte> voxels)>;
 void read_parts(const VolumeSource& source, const VoxelBox& box, std::span<std::byte> voxels, Gaps* gaps,
                 const TakePart& take);
 
-/// A volume in which unreadable voxels have the lowest value of their type, or NaN. Both arguments must outlive it. If
-/// there are several levels, reads of single bricks fail instead, because their callers know better what to show in
-/// place of a missing brick.
+/// Presents a volume, with the lowest value of its type, or NaN, in unreadable voxels. Both arguments must outlive it.
+/// If there are several levels, reads of single bricks fail instead, since their callers know better how to show a
+/// missing brick.
 class GapSource final : public VolumeSource {
 public:
     GapSource(const VolumeSource& source, Gaps& gaps) : VolumeSource(source.info()), source_(source), gaps_(gaps) {}

@@ -1,5 +1,5 @@
 #pragma once
-// Arithmetic on grids of voxels, bricks and chunks, x fastest, and on boxes of voxels. Pure functions; any thread.
+// Arithmetic on grids of voxels, bricks and chunks (x fastest) and on boxes of voxels. Pure functions; any thread.
 
 #include "engine/volume/volume.h"
 #include "shaders/bricks.h"
@@ -11,7 +11,7 @@ inline constexpr int64_t BRICK_SIDE = gpu::BRICK_SIZE;
 /// The largest accepted side of a volume, in voxels.
 inline constexpr int64_t MAX_SIDE = int64_t{1} << 20;
 
-/// Bricks along each axis of a volume of `size` voxels.
+/// Returns the number of bricks along each axis of a volume of `size` voxels.
 inline Size3 brick_grid(const Size3& size)
 {
     return (size + (BRICK_SIDE - 1)) / BRICK_SIDE;

@@ -1,5 +1,5 @@
 #pragma once
-// How a coarser level is computed from a finer one, both in projects and in memory.
+// Computes a coarser level from a finer one, for projects and for levels in memory.
 //
 // A voxel is the mean of the up to 2^3 voxels below it. Only finite voxels inside the volume count; if there are none,
 // the mean is NaN. Sums are exact for integers and computed in double for floats, along y and z before x. Integers are
@@ -16,15 +16,15 @@ namespace shvr {
 
 enum class Halving {
     mean,   ///< mean of intensities
-    label,  ///< most frequent label, as labels have no mean
+    label,  ///< the most frequent label, since a mean of labels is meaningless
 };
 
-/// Type that holds the sum of eight voxels without overflow.
+/// A type that holds the sum of eight voxels without overflow.
 template <class T>
 using HalvingSum =
     std::conditional_t<std::is_floating_point_v<T>, double, std::conditional_t<sizeof(T) == 4, int64_t, int32_t>>;
 
-/// The rows of the finer level below one row of the coarser level: 1, 2 or 4.
+/// Those 1, 2 or 4 rows of the finer level that are below one row of the coarser level.
 template <class T>
 struct HalvingRows {
     std::array<const T*, 4> first{};
@@ -66,7 +66,7 @@ T mean_of_finite(const HalvingRows<T>& rows, int64_t begin, int64_t end)
     return count > 0 ? static_cast<T>((sum[0] + sum[1]) / count) : std::numeric_limits<T>::quiet_NaN();
 }
 
-/// Length of the loops in which nearly all time is spent, known at compile time.
+/// The inner loops have this length, which is known at compile time, so that the compiler can vectorise them.
 inline constexpr int64_t BLOCK = 64;
 
 template <int ROWS, class T, class Length>
@@ -86,7 +86,7 @@ void halve_block(const HalvingRows<T>& rows, int64_t at, Length length, T* halve
         halved[length / 2] = mean_of<ROWS, T>(alone);
     }
     if constexpr (std::is_floating_point_v<T>) {
-        // A non-finite voxel makes the mean non-finite; such means are computed again from finite voxels.
+        // If a mean is not finite, one of its voxels is not: it is computed again from the finite voxels alone.
         for (int64_t x = 0; x < length; x += 2) {
             if (std::isfinite(halved[x / 2])) continue;
             halved[x / 2] = mean_of_finite(rows, at + x, at + std::min<int64_t>(x + 2, length));
@@ -106,7 +106,7 @@ void halve(const HalvingRows<T>& rows, int64_t length, T* halved)
 
 }  // namespace halving
 
-/// Returns the most frequent label. Ties go to labels other than 0 (background), then to the smallest label.
+/// Returns the most frequent label. Among equally frequent labels, 0 (background) comes last; then the smallest wins.
 template <class T>
 void halve_labels(const HalvingRows<T>& rows, int64_t length, T* halved)
 {
@@ -129,7 +129,7 @@ void halve_labels(const HalvingRows<T>& rows, int64_t length, T* halved)
     }
 }
 
-/// Makes (length + 1) / 2 voxels of the coarser level from rows of `length` voxels.
+/// Computes (length + 1) / 2 voxels of the coarser level from rows of `length` voxels.
 template <class T>
 void halve_rows(const HalvingRows<T>& rows, int64_t length, T* halved, Halving how = Halving::mean)
 {

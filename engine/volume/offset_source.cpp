@@ -22,7 +22,7 @@ namespace {
 template <class T>
 using OffsetOf = std::conditional_t<std::is_floating_point_v<T>, float, int32_t>;
 
-/// Adds an offset to a voxel: saturates, never wraps; NaN and infinities stay unchanged.
+/// Adds an offset to a voxel and clamps the sum to the type's range. NaN and infinities stay unchanged.
 template <class T>
 T raised(T voxel, OffsetOf<T> offset)
 {
@@ -37,7 +37,7 @@ T raised(T voxel, OffsetOf<T> offset)
     }
 }
 
-/// Returns value + offset, clamped to the range of `type`; for integer types, the result may be fractional (a bound).
+/// Returns value + offset, clamped to the range of `type`. Not rounded for integer types, since it is used as a bound.
 double raised_value(VoxelType type, double value, double offset)
 {
     return with_voxel_type(type, [&]<class T>(T) {
@@ -60,7 +60,7 @@ void add_row(std::byte* voxels, const uint32_t* offsets, int64_t count)
     }
 }
 
-/// Halves a brick's offsets, `extent` of them along each axis, and stores them in one octant of its parent brick.
+/// Halves the offsets of a brick (`extent` voxels) and stores them in one octant of its parent brick.
 template <class Offset>
 void halve(const OffsetBrick& brick, const Size3& extent, const Size3& octant, OffsetBrick& above)
 {
@@ -128,7 +128,7 @@ const OffsetSource::Entry* OffsetSource::find(const Entries& changed, const Bric
     return found == entries_.end() ? nullptr : &found->second;
 }
 
-/// Recomputes the parent's offsets from those of its at most eight child bricks on the next finer level.
+/// Recomputes the offsets of a parent brick from its up to eight child bricks on the next finer level.
 OffsetSource::Entry OffsetSource::parent(const Entries& changed, const BrickKey& key) const
 {
     auto offsets = std::make_shared<OffsetBrick>(OffsetBrick{});

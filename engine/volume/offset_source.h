@@ -1,9 +1,9 @@
 #pragma once
 // A volume with density offsets: another source's values plus an offset per voxel, clamped to the range of the type.
-// Voxels without an offset are returned bit for bit.
+// Voxels without an offset keep their bits.
 //
-// Voxels of coarser levels: the base source's value plus the halved offsets (halving.h). The result equals the mean of
-// the offset voxels below, except for one rounding and for clamped voxels.
+// A voxel of a coarser level is the base source's value plus the halved offsets (halving.h). It equals the mean of the
+// offset voxels below, except for one rounding, and except where voxels were clamped.
 //
 // Threads: one thread sets offsets while any thread reads. Bricks of offsets are immutable: a reader fetches the bricks
 // it needs under a lock and adds them without the lock, so each read sees a consistent snapshot of the offsets.
@@ -22,12 +22,12 @@ class OffsetSource final : public VolumeSource {
 public:
     explicit OffsetSource(std::shared_ptr<const VolumeSource> base);
 
-    /// Replaces the offsets of a brick of level 0; null removes them. Offsets outside the volume must be 0.
+    /// The new offsets of a brick of level 0; null removes them. Offsets outside the volume must be 0.
     struct Brick {
         glm::ivec3 brick{0};
         std::shared_ptr<const OffsetBrick> offsets;
     };
-    /// Replaces the offsets of these bricks and updates coarser levels; each costs an eighth of the one below it.
+    /// Replaces the offsets of these bricks and updates coarser levels, each at an eighth of the cost of the finer one.
     void set(std::span<const Brick> bricks);
     /// Whether no voxel has an offset.
     bool empty() const { return !any_.load(std::memory_order_acquire); }
@@ -36,9 +36,9 @@ public:
     Size3 block() const override { return base_->block(); }
     int levels() const override { return base_->levels(); }
     void read_level(int level, const VoxelBox& box, std::span<std::byte> voxels) const override;
-    /// Returns the range of the base source, widened by the offsets of this brick and of neighbouring bricks.
+    /// Returns the base source's range, widened by the offsets of this brick and of neighbouring bricks.
     std::optional<ValueRange> brick_range(int level, const Size3& brick) const override;
-    /// Returns the blocks of the base source and all blocks that hold an offset.
+    /// Returns the stored blocks of the base source, and all blocks that have an offset.
     std::optional<StoredBlocks> stored_blocks(int level, int64_t most) const override;
     /// Unknown for volumes with offsets.
     std::optional<VolumeStatistics> statistics() const override;
@@ -46,7 +46,7 @@ public:
 private:
     struct Entry {
         std::shared_ptr<const OffsetBrick> offsets;  ///< null: all offsets of this level are 0
-        ValueRange range;                            ///< range of 0 and all level 0 offsets below this brick
+        ValueRange range;                            ///< range of 0 and the level 0 offsets below this brick
     };
     using Entries = std::unordered_map<BrickKey, Entry, BrickKeyHash>;
     const Entry* find(const Entries& changed, const BrickKey& key) const;
@@ -54,7 +54,7 @@ private:
 
     std::shared_ptr<const VolumeSource> base_;
     mutable std::shared_mutex mutex_;
-    Entries entries_;  ///< written by the thread that sets offsets, under the lock
+    Entries entries_;  ///< changed under the lock, only by the thread that sets offsets
     std::atomic<bool> any_{false};
 };
 

@@ -9,12 +9,12 @@
 namespace shvr {
 namespace {
 
-/// In a volume of fewer voxels than this (a cube of three), no value is common enough to make others outliers.
+/// Smaller volumes (less than 3^3 voxels) have no outliers: too few voxels are left to compare with.
 constexpr int64_t MIN_VOXELS = 27;
 
-/// Outliers at one end number at most a fraction of all voxels, or at most `few`, and lie beyond a gap of `gap` times
-/// the range of the other values. Rare bright structures in a scan, such as metal or one vessel, have more voxels than
-/// that, or blend into the rest through partial-volume voxels and so leave no gap.
+/// Values at one end are outliers if they lie beyond a gap of `gap` times the range of all other values, and if they
+/// are at most a fraction `share` of all voxels, or `few` voxels. Rare bright structures in a scan, such as metal or
+/// one vessel, have more voxels, or have no gap because of partial-volume voxels at their surface.
 struct Rule {
     double share;
     int64_t few;
@@ -27,40 +27,40 @@ struct Rule {
         return std::clamp(int64_t(share * double(voxels)), some, MAX_OUTLIERS);
     }
 };
-/// Rule for fill values and broken voxels: if kept, they would leave the others fewer than 66 of the 65536 codes.
+/// Rule for undetected fill values and broken voxels, which would leave fewer than 66 of 65536 codes for other values.
 constexpr Rule FAR{1e-4, 8, 1000.0};
 /// Hot pixels.
 constexpr Rule NEAR{1e-5, 1, 4.0};
 
-/// Hot and dead pixels are few, however far they lie from the rest, and are recognised by the spacing of the values
-/// next to them. In the tail of a distribution, the gap between the k-th and the next value is about unit / k; a first
-/// gap of ten units occurs by chance in one of 20,000 scans. The gap must also be large enough to matter, and exceed
-/// the distances between the outermost values, which may be labels.
+/// Hot and dead pixels are few, and recognised by the spacing of the values next to them. In the tail of a
+/// distribution, the gap between the k-th and the next value is about unit / k; a first gap of ten units occurs by
+/// chance in one of 20,000 scans. The gap must also be a minimum fraction of the range, and exceed the distances
+/// between the outermost values, which may be labels.
 constexpr int64_t TAIL = 32;  ///< values that tell the unit
 constexpr int64_t MIN_VOXELS_OF_TAIL = 4 * TAIL;
 constexpr double MIN_UNITS = 10.0, MIN_STEPS = 2.0, MIN_SHARE = 0.01;
 constexpr int STEPS = 8;
 
-/// If there are fewer distinct values than this, they are labels or a few materials, and none of them is an outlier.
+/// Fewer distinct values than this are labels or a few materials: none of them is then an outlier.
 constexpr size_t MIN_VALUES_AT_END = 12;
 
-/// Fill values lie behind a gap of this many times the range of all other values. For the smallest and largest values
-/// of a type, which are unlikely to be measured, a smaller gap suffices. 0 is air or background, not a fill value:
-/// scans are masked with 0, and a synthetic scan has objects of nearly one intensity in it. Where every value has its
-/// own code, only negative values and the type's extremes qualify: positive values may be labels, and excluding them
-/// would improve only the automatic settings. Saturated voxels blend into the rest through partial volumes.
+/// Fill values lie behind a gap of this many times the range of all other values. A smaller gap is sufficient for the
+/// smallest and the largest value of a type, which are rarely measured. 0 is air or background, not a fill value: scans
+/// are masked with 0, and a synthetic scan may have objects of nearly one intensity in it. If every value has its own
+/// code, only negative values and the type's extremes qualify: positive values may be labels, and excluding them would
+/// only improve automatic settings. Saturated voxels have no gap, because of partial-volume voxels.
 constexpr double MIN_GAP_OF_FILL = 10.0, MIN_GAP_OF_EXTREME = 2.0;
 constexpr size_t MAX_FILL_VALUES = 3;  ///< at one end
 constexpr int64_t MIN_VOXELS_OF_FILL = 2;
 constexpr double FLOAT_EXTREME = 1e30;  ///< floats this large are markers
 
-/// Returns half of a - b; the half is finite for all finite a and b, even where a - b is infinite.
+/// Returns (a - b) / 2, which is finite for all finite a and b, even if a - b overflows to infinity.
 double half_distance(double a, double b)
 {
     return 0.5 * a - 0.5 * b;
 }
 
-/// Returns whether the value is the smallest or largest of the type; false for types whose ends a scanner may reach.
+/// Returns whether the value is the smallest or largest of its type; false for types whose full range scanners use.
 bool is_extreme(VoxelType type, double value)
 {
     switch (type) {
@@ -78,12 +78,12 @@ bool is_extreme(VoxelType type, double value)
 
 }  // namespace
 
-/// One end of the values. At the lower end, values are negated, so that both ends are in descending order.
+/// One end of the sorted values. Values are negated at the lower end, so that both ends are in descending order.
 class OutlierFinder::End {
 public:
     explicit End(const Largest& values) : values_(values.sorted()) {}
 
-    /// Returns the value of voxel number `place`, counted inwards from the outermost voxel that is not excluded.
+    /// Returns the value of voxel number `place`, counted inwards from the outermost voxel that is still included.
     double at(int64_t place) const
     {
         size_t i = first_;
@@ -102,13 +102,13 @@ public:
     }
     const std::vector<ValueCount>& fill() const { return fill_; }
 
-    /// Returns the k-th distinct value; minus infinity if there are fewer.
+    /// Returns the k-th distinct value, counted inwards; minus infinity if there are fewer values.
     double different(size_t k) const
     {
         return first_ + k < values_.size() ? values_[first_ + k].value : -std::numeric_limits<double>::infinity();
     }
 
-    /// Walks from the inside outwards, and excludes everything beyond the first gap that satisfies the rule.
+    /// Tests gaps from the inside outwards, and excludes all values beyond the first gap that satisfies the rule.
     void exclude(const Rule& rule, int64_t limit, double other_end)
     {
         exclude_beyond(limit, [&](size_t last, int64_t) {
@@ -117,7 +117,7 @@ public:
         });
     }
 
-    /// Excludes values whose distance from the others is large compared with the spacing of the others.
+    /// Excludes values whose distance from the others is large, compared with the spacing of the others.
     void exclude_isolated(int64_t limit, double range)
     {
         exclude_beyond(limit, [&](size_t last, int64_t voxels) {
@@ -129,7 +129,7 @@ public:
         });
     }
 
-    /// Excludes up to MAX_FILL_VALUES outermost values if all satisfy `are_fill`(value, gap in units of the range).
+    /// Excludes up to MAX_FILL_VALUES outermost values if all satisfy `are_fill(value, gap)`; gap: in ranges.
     template <class AreFill>
     bool exclude_fill(double other_end, const AreFill& are_fill)
     {
@@ -151,7 +151,7 @@ public:
     }
 
 private:
-    /// Excludes the innermost value with `is_last(index, voxels up to it)` and all outer ones; at most `limit` voxels.
+    /// Excludes the innermost value with `is_last(index, voxels up to it)` and all outer values, up to `limit` voxels.
     template <class IsLast>
     void exclude_beyond(int64_t limit, const IsLast& is_last)
     {
@@ -166,7 +166,7 @@ private:
         }
     }
 
-    /// Returns the largest distance between neighbours among the STEPS distinct values that start at index `from`.
+    /// Returns the largest distance between two successive values, among the STEPS distinct values from index `from`.
     double largest_step(size_t from) const
     {
         double largest = 0.0;
@@ -252,7 +252,7 @@ void OutlierFinder::exclude_strays(End& upper, End& lower, bool has_exact_codes)
         if (!is_continuous && (has_exact_codes || rule.gap == NEAR.gap)) continue;
         const int64_t limit = rule.limit(count_);
         const double upper_end = upper.at(limit), lower_end = -lower.at(limit);
-        // If nearly all voxels have the same value, the few other voxels are the interesting ones.
+        // If nearly all voxels have one value, the few other voxels are structures, not outliers.
         if (!(lower_end < upper_end)) continue;
         upper.exclude(rule, limit, lower_end);
         lower.exclude(rule, limit, -upper_end);
@@ -267,7 +267,7 @@ bool OutlierFinder::exclude_fill(End& upper, End& lower, bool has_exact_codes) c
                 return is_fill_like(sign * value, has_exact_codes, gap);
             }))
             return false;
-        // The remaining values must be more than a few labels.
+        // At least MIN_VALUES_AT_END distinct values must remain; fewer would be labels.
         if (!(without.different(MIN_VALUES_AT_END - 1) > -other.different(MIN_VALUES_AT_END - 1))) return false;
         if (count_ - without.fill_voxels() - other.fill_voxels() < MIN_VOXELS) return false;
         end = std::move(without);
@@ -287,7 +287,7 @@ std::optional<OutlierFinder::Bulk> OutlierFinder::bulk()
         const bool has_exact_codes =
             !is_float(type_) && half_distance(upper.at_start(), -lower.at_start()) <= 0.5 * 65535.0;
         exclude_strays(upper, lower, has_exact_codes);
-        // A fill value hides outliers at the other end.
+        // Fill values widen the range, which hides outliers at the other end: searches again without them.
         if (finds_fill_ && exclude_fill(upper, lower, has_exact_codes)) {
             exclude_strays(upper, lower, has_exact_codes);
             exclude_fill(upper, lower, has_exact_codes);

@@ -1,5 +1,5 @@
 #pragma once
-// Finds the few values of a volume that lie far from all others: a range that included them would show nothing else.
+// Finds the few values of a volume that lie so far from all others that the full range would hide the other values.
 
 #include <cstdint>
 #include <limits>
@@ -14,14 +14,14 @@ namespace shvr {
 /// - fill values: single values, however frequent, at an end of the range, behind a gap that is wide for all others;
 /// - outliers: few values beyond a gap that is wide compared with the range of all others, or with the spacing of the
 ///   values next to the gap.
-/// outliers.cpp has the limits. One thread.
+/// outliers.cpp defines the limits. One thread.
 class OutlierFinder {
 public:
-    /// `voxels`: upper bound of the number of values that will be added. `type`: integers with few distinct values may
-    /// be labels. `nodata`: the only fill value, if it is known (VolumeInfo::nodata).
+    /// `voxels`: upper bound of the number of values to be added. `type`: integers with few distinct values may be
+    /// labels. `nodata`: the only fill value, if it is known (VolumeInfo::nodata).
     explicit OutlierFinder(int64_t voxels, VoxelType type = VoxelType::float64, std::optional<double> nodata = {});
 
-    /// Adds a finite value that occurs `times` times.
+    /// Adds `times` voxels with the finite value `value`.
     void add(double value, int64_t times = 1)
     {
         if (value == nodata_) {
@@ -34,14 +34,14 @@ public:
     }
 
     struct Bulk {
-        ValueRange range;      ///< exact range of all values except fill values and outliers
+        ValueRange range;      ///< exact range of the values that are neither fill values nor outliers
         int64_t outliers = 0;  ///< those that are no fill values
         std::vector<ValueCount> fill{};
     };
     /// Null if there are neither outliers nor fill values.
     std::optional<Bulk> bulk();
 
-    /// Keeps the largest values, each once, with its count.
+    /// Keeps the largest distinct values, with the count of each.
     class Largest {
     public:
         explicit Largest(size_t kept) : kept_(kept) {}
@@ -65,7 +65,7 @@ public:
         size_t kept_;
         double least_ = -std::numeric_limits<double>::infinity();  ///< smaller ones are dropped
         ValueCount most_{-std::numeric_limits<double>::infinity(), 0};
-        std::vector<ValueCount> others_;  ///< up to twice as many candidates as are kept, in any order
+        std::vector<ValueCount> others_;  ///< candidates in any order; reduced once there are twice as many as needed
     };
 
 private:

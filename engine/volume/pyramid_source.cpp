@@ -14,10 +14,10 @@ namespace shvr {
 
 namespace {
 
-/// Coarser levels are computed if a file's coarsest level has more bricks than this (512^3 voxels).
+/// If a file's coarsest level has more bricks than this (512^3 voxels), coarser levels are computed.
 constexpr int64_t MAX_COARSEST = 4096;
 
-/// A level with the memory layout of a file.
+/// A level with x fastest, as in a file.
 struct Level {
     Size3 size{0};
     std::vector<std::byte> voxels;
@@ -58,7 +58,7 @@ public:
     void build(int levels, const Progress& progress)
     {
         double begun = 0.0;
-        // Each level has an eighth of the voxels of the previous level.
+        // Progress is divided in proportion to the voxels: each level has an eighth of those of the previous one.
         for (double share = 0.875; this->levels() < levels; share /= 8.0) {
             coarse_.push_back(halved<T>(*this, this->levels() - 1, part_of(progress, begun, begun + share)));
             begun += share;
@@ -91,7 +91,7 @@ public:
     std::optional<ValueRange> brick_range(int level, const Size3& brick) const override
     {
         if (level < base_->levels()) return base_->brick_range(level, brick);
-        // Means lie within the range of the voxels they average, but only the source knows that range.
+        // The means lie in the range of the averaged voxels, which is not known here, except where nothing is stored.
         if (!sparse_ || !sparse_->is_gap(level, brick)) return std::nullopt;
         return sparse_->fills();
     }
@@ -108,7 +108,7 @@ private:
     int levels_ = 0;  ///< including sparse ones
 };
 
-/// The levels to be computed for a source.
+/// The levels that have to be computed for a source.
 struct Plan {
     int levels = 0;  ///< 0: nothing
     std::optional<SparseLevels> sparse{};

@@ -18,7 +18,7 @@ namespace {
 
 constexpr size_t BINS = 256;
 
-/// The volume to measure, and the receivers of progress and gaps. Several passes may repeat one walk.
+/// The volume to measure, and where to report progress and gaps. Several passes may visit the same walk.
 struct Measured {
     const VolumeSource& source;
     const VoxelWalk& walk;
@@ -26,8 +26,8 @@ struct Measured {
     Gaps* gaps;
 };
 
-/// Calls `take(span<const T>, count)` for every box of the walk, or for its readable parts; `count` states how many
-/// times each voxel of the span occurs in the volume.
+/// Calls `take(span<const T>, count)` for every box of the walk, or for its readable parts. `count`: how many voxels of
+/// the volume each voxel of the span represents.
 template <class T, class Take>
 void for_each_slab(const Measured& measured, double lower, double upper, const Take& take)
 {
@@ -50,21 +50,21 @@ void for_each_slab(const Measured& measured, double lower, double upper, const T
 
 size_t bin_of(const ValueRange& range, double value)
 {
-    // Both terms are halved, because doubles may lie so far apart that their difference is infinite.
+    // Computes half of the extent: the full extent of doubles can overflow to infinity.
     const double extent = 0.5 * range.upper - 0.5 * range.lower;
     if (!(extent > 0.0)) return 0;
     const double place = (0.5 * std::clamp(value, range.lower, range.upper) - 0.5 * range.lower) / extent;
     return std::min(BINS - 1, size_t(place * double{BINS}));
 }
 
-/// Integers of 8 and 16 bits have few enough values to count each value; the statistics follow from the counts.
+/// For integers of 8 and 16 bits, counts each value; all statistics follow from the counts.
 template <class T>
 VolumeStatistics measure_integers(const Measured& measured)
 {
     using Unsigned = std::make_unsigned_t<T>;
     constexpr size_t VALUES = size_t{std::numeric_limits<Unsigned>::max()} + 1;
-    // Neighbouring voxels are often equal. Counting them alternately in several tables avoids a dependency between
-    // successive additions.
+    // Neighbouring voxels are often equal. Counting them in alternating tables avoids that an increment has to wait for
+    // the previous one.
     constexpr size_t TABLES = 4;
     std::vector<int64_t> counts(TABLES * VALUES);
     for_each_slab<T>(measured, 0.0, 1.0, [&](std::span<const T> voxels, int64_t times) {
@@ -86,7 +86,7 @@ VolumeStatistics measure_integers(const Measured& measured)
 
 // ---- Types with too many values to count each -----------------------------------------------------------------------
 
-/// Calls `take(value, count)` for all finite voxels (`count` voxels have `value`); returns the number of other voxels.
+/// Calls `take(value, count)` for finite values, which `count` voxels have. Returns the number of other voxels.
 template <class T, class Take>
 int64_t for_each_finite(const Measured& measured, double lower, double upper, const Take& take)
 {
@@ -105,7 +105,7 @@ int64_t for_each_finite(const Measured& measured, double lower, double upper, co
     return others;
 }
 
-/// Excludes fill values and outliers from the statistics' range, if there are any.
+/// Finds fill values and outliers, and sets the range of the statistics without these.
 void find_bulk(OutlierFinder& outliers, std::optional<double> nodata, VolumeStatistics& statistics)
 {
     std::optional<OutlierFinder::Bulk> bulk = outliers.bulk();
@@ -121,7 +121,7 @@ bool is_fill(const VolumeStatistics& statistics, double value)
     return std::ranges::any_of(statistics.fill, [&](const ValueCount& fill) { return fill.value == value; });
 }
 
-/// The sum and the number of values, for a mean.
+/// A sum and the number of its values, for a mean.
 struct Sum {
     long double sum = 0.0L;
     int64_t voxels = 0;
@@ -239,7 +239,7 @@ std::optional<StoredBlocks> stored_in(const VolumeSource& source, int level, int
     return source.stored_blocks(level, int64_t(std::clamp(most, 64.0, double(MAX_STORED_BLOCKS))));
 }
 
-/// Measures one level: all of it, or only its stored blocks.
+/// Measures one level: all voxels, or only the stored blocks.
 VolumeStatistics measure_exactly(const VolumeSource& source, std::optional<StoredBlocks> stored,
                                  const MeasureOptions& options)
 {
@@ -323,7 +323,7 @@ VolumeStatistics measure(const VolumeSource& source, const MeasureOptions& optio
 
 namespace {
 
-/// Returns whether outliers are clamped to the nearer end's code (window_for). Whole-number extremes imply integers.
+/// Whether outliers are clamped to the code of the nearer end (window_for). Assumes integers if all extremes are whole.
 bool are_clamped(const VolumeStatistics& statistics)
 {
     const auto [lower, upper] = statistics.range();

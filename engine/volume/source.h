@@ -1,5 +1,5 @@
 #pragma once
-// Sources of voxels. A source has one volume and returns boxes of it in the file's own type; it knows nothing of
+// Sources of voxels. A source has one volume, and returns boxes of voxels in the file's own type; it does not depend on
 // windows or devices. Readers are functions: a null source means "not my format", an `Error` means "mine, but broken".
 // `open_volume` (open_volume.h) tries the readers in a fixed order.
 //
@@ -18,24 +18,24 @@
 
 namespace shvr {
 
-/// The stored blocks of a level that may be mostly absent, as in a sparse file. Work on such a level then costs no more
-/// than work on its stored blocks.
+/// The stored blocks of a level, most of which may be absent, as in a sparse file. Work on such a level should only
+/// take time for stored blocks.
 struct StoredBlocks {
-    Size3 block{1};                    ///< voxels of a block; block i covers [i * block, (i + 1) * block)
-    double fill = 0.0;                 ///< value of all voxels outside the blocks; may be infinite or NaN
-    std::vector<glm::ivec3> blocks{};  ///< listed once each, sorted by z, then y, then x
+    Size3 block{1};                    ///< size in voxels; block i covers [i * block, (i + 1) * block)
+    double fill = 0.0;                 ///< value of all voxels in no block; may be infinite or NaN
+    std::vector<glm::ivec3> blocks{};  ///< without repetitions, sorted by z, then y, then x
 };
 
-/// The user's choice for files that hold several volumes. Without a choice, a reader refuses such a file with a message
-/// that lists the choices; readers of formats with one volume ignore the choice.
+/// Selects a volume from files that hold several. Without a choice, a reader refuses such a file with a message that
+/// lists the choices. Readers of formats with one volume ignore the choice.
 struct OpenOptions {
     std::string channel{};  ///< "red", "green", "blue", "alpha", a channel's name in the file, or its number from 1
-    std::string frame{};    ///< number of the time point, from 1, if there are several
-    int level = 0;          ///< level to open if the file has several; 0: the finest. It becomes level 0 (coarser.h)
-    /// Replaces the spacing that the file states, or provides a missing one (engine/formats/restated.h).
+    std::string frame{};    ///< number of the time point, starting at 1, if there are several
+    int level = 0;          ///< the level to open as level 0 if the file has several (coarser.h); 0: the finest
+    /// Replaces or provides the spacing of the file (engine/formats/restated.h).
     std::optional<glm::dvec3> spacing{};
     std::string unit{};  ///< empty: the file's
-    /// Value of voxels without data; infinite: there is none; null: it is found by its gap (outliers.h).
+    /// Value of voxels without data; infinite: no such value; null: the value is detected (outliers.h).
     std::optional<double> nodata{};
     bool operator==(const OpenOptions&) const = default;
 };
@@ -48,26 +48,26 @@ public:
 
     const VolumeInfo& info() const { return info_; }
 
-    /// Copies the voxels of `box` (inside the volume) into `voxels`, x fastest, in the native byte order of
-    /// `info().type`; `voxels` holds exactly the box. Any thread may call it; throws `Error` on read errors.
+    /// Copies the voxels of `box`, which lies inside the volume, into `voxels`, x fastest, in the native byte order of
+    /// `info().type`. The size of `voxels` is that of the box. Any thread may call it. Throws `Error` if reading fails.
     virtual void read(const VoxelBox& box, std::span<std::byte> voxels) const = 0;
 
-    /// The block size of level 0 in the file. Reading boxes of whole blocks, counted from voxel 0, decodes every block
-    /// only once. 1, 1, 1: any box is equally efficient.
+    /// The block size of level 0 in the file. If boxes consist of whole blocks, counted from voxel 0, every block is
+    /// decoded only once. 1, 1, 1: all boxes are equally efficient.
     virtual Size3 block() const { return Size3(1); }
 
     /// The number of levels, at least 1.
     virtual int levels() const { return 1; }
     /// Like `read`, for any level.
     virtual void read_level(int level, const VoxelBox& box, std::span<std::byte> voxels) const;
-    /// Returns the range of values around brick `brick` of `level` (gpu::BRICK_SIZE voxels a side, counted from voxel
-    /// 0), including one voxel of `level` on every side, without reading voxels. The range covers levels 0 to `level`.
-    /// Null if the source does not know the range.
+    /// Returns the range of the values of a brick of `level` (gpu::BRICK_SIZE voxels a side, counted from voxel 0) and
+    /// one voxel of `level` around it, without reading voxels. The range holds for the voxels there of levels 0 to
+    /// `level`. Null if the source does not know it.
     virtual std::optional<ValueRange> brick_range(int level, const Size3& brick) const;
-    /// Returns the stored blocks of the level, without reading voxels. Null if the source does not know them, or if
-    /// more than `most` blocks are stored.
+    /// Returns the stored blocks of a level, without reading voxels. Null if the source does not know them, or if there
+    /// are more than `most`.
     virtual std::optional<StoredBlocks> stored_blocks(int level, int64_t most) const;
-    /// Returns the statistics of level 0 if the source knows them; otherwise `measure` computes them.
+    /// Returns the statistics of level 0 if the source knows them. Otherwise `measure` computes them.
     virtual std::optional<VolumeStatistics> statistics() const { return std::nullopt; }
 
 protected:
@@ -78,13 +78,13 @@ private:
 };
 
 struct MeasureOptions {
-    bool exact = false;  ///< measures all voxels of level 0, whatever the cost
+    bool exact = false;  ///< measures all voxels of level 0, even if this takes long
     Progress progress{};
-    Gaps* gaps = nullptr;  ///< receives unreadable parts, which are not measured (gaps.h); null: failures are thrown
+    Gaps* gaps = nullptr;  ///< receives unreadable parts, which are left out (gaps.h); null: reading errors are thrown
 };
-/// Measures the volume in slabs of bounded size: at most 32 MiB, at least one row. Types of 32 and 64 bits need a
-/// second pass for the histogram; its range, without outliers (outliers.h), comes from the first pass. A volume without
-/// a finite voxel has minimum = maximum = mean = 0. Statistics that the source knows are not measured.
+/// Measures the volume in slabs of at most 32 MiB, but at least one row. Types of 32 and 64 bits need a second pass for
+/// the histogram; its range, without outliers (outliers.h), comes from the first pass. A volume without a finite voxel
+/// has minimum = maximum = mean = 0. Statistics that the source knows are returned without measuring.
 ///
 /// Large volumes: if a source knows its stored blocks, only those are read, and all other voxels count as fill values.
 /// The measured level (VolumeStatistics::measured_level) is the finest that has, or stores, at most MAX_VOXELS_MEASURED
@@ -94,15 +94,15 @@ struct MeasureOptions {
 VolumeStatistics measure(const VolumeSource& source, const MeasureOptions& options = {});
 inline constexpr int64_t MAX_VOXELS_MEASURED = int64_t{1} << 27;
 inline constexpr int64_t MAX_VOXELS_EXACT = int64_t{1} << 30;
-/// Practical maximum of stored blocks: those of 2^42 voxels in blocks of 64^3; a list of that many takes 192 MiB.
+/// Practical maximum of the number of stored blocks: 2^42 voxels in blocks of 64^3. The list then takes 192 MiB.
 inline constexpr int64_t MAX_STORED_BLOCKS = int64_t{1} << 24;
 
-/// Measures one level like an exact `measure`, always by reading the level's voxels.
+/// Measures one level like an exact `measure`, but always reads its voxels, even if the source knows its statistics.
 VolumeStatistics measure_level(const VolumeSource& source, int level, const MeasureOptions& options = {});
-/// Returns the statistics of 8- or 16-bit integers; `lowest` + i occurs `counts[i]` times. `nodata`: see VolumeInfo.
+/// Returns statistics of 8- or 16-bit integers: `counts[i]` voxels have the value `lowest` + i. `nodata`: VolumeInfo.
 VolumeStatistics statistics_of(std::span<const int64_t> counts, int lowest, std::optional<double> nodata = {});
 
-/// Returns warnings about the voxels for the user, one sentence each: about NaN, infinities, fill values and outliers,
+/// Returns warnings for the user, one sentence each: about NaN, infinities, fill values and outliers among the voxels,
 /// and about statistics measured only on a coarser level or a sample.
 std::vector<std::string> warnings_of(const VolumeStatistics& statistics);
 

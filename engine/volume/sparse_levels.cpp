@@ -16,9 +16,9 @@ namespace shvr {
 namespace {
 
 constexpr int64_t TILE = 8, TILE_VOXELS = TILE * TILE * TILE;
-/// Memory of a tile's entries in the tables of positions and indices, in addition to the tile's voxels.
+/// Memory of a tile in addition to its voxels: its entries in the tables of positions and indices.
 constexpr uint64_t TABLE_BYTES = 80;
-/// If more than this fraction of a volume is stored, dense levels are smaller and faster than sparse ones.
+/// If more than this fraction of a volume is stored, dense levels take less memory and are faster than sparse ones.
 constexpr double MAX_SHARE = 0.25;
 
 uint64_t key_of(const Size3& tile)
@@ -26,7 +26,7 @@ uint64_t key_of(const Size3& tile)
     return uint64_t(tile.x) | uint64_t(tile.y) << 21 | uint64_t(tile.z) << 42;
 }
 
-/// Returns the smallest box that covers `box` on the level `levels` levels coarser.
+/// Returns the smallest box of the level that is `levels` coarser which covers `box`.
 VoxelBox coarser(const VoxelBox& box, int levels)
 {
     const int64_t side = int64_t{1} << levels;
@@ -69,7 +69,7 @@ std::optional<SparseLevels> SparseLevels::plan(const VolumeSource& source, int l
         const Size3 size = size_of_level(planned.size_, level);
         if (double(voxels_stored(*stored, size)) > MAX_SHARE * double(size.x) * double(size.y) * double(size.z))
             return std::nullopt;
-        planned.fill_ = stored->fill;  // fill value of the source's coarsest level, and so of the computed levels
+        planned.fill_ = stored->fill;  // of the source's coarsest level, and so of all computed levels
         if (std::isfinite(stored->fill))
             planned.fills_ = {std::min(planned.fills_.lower, stored->fill),
                               std::max(planned.fills_.upper, stored->fill)};

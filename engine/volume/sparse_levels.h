@@ -1,6 +1,6 @@
 #pragma once
-// Coarser levels of a sparse volume, in memory. Voxels exist only where something is stored below, so that the levels
-// take a seventh of the bytes of the stored part. For pyramid_source.cpp.
+// Coarser levels of a sparse volume, in memory. Voxels exist only above stored voxels, so that the levels take a
+// seventh of the bytes of the stored part. For pyramid_source.cpp.
 
 #include <limits>
 #include <unordered_map>
@@ -12,22 +12,22 @@
 
 namespace shvr {
 
-/// Leaves the source's own levels unchanged, and computes coarser levels from the source's coarsest.
+/// Computes coarser levels from the source's coarsest level. The source's own levels are not copied.
 class SparseLevels {
 public:
-    /// Plans up to `levels` levels, including the source's own; reads nothing. Null if the source cannot list its
-    /// stored blocks, or stores so many that dense levels would be smaller.
+    /// Plans up to `levels` levels, including the source's own, without reading voxels. Null if the source cannot list
+    /// its stored blocks, or stores so many that dense levels would be smaller.
     static std::optional<SparseLevels> plan(const VolumeSource& source, int levels);
 
     uint64_t bytes() const;
-    /// Reads the stored part of the source's coarsest level; pass the source that was passed to `plan`.
+    /// Reads the stored part of the source's coarsest level. `source` must be the source passed to `plan`.
     void build(const VolumeSource& source, const Progress& progress);
 
-    /// Reads voxels of a computed level; `level` must not be one of the source's own.
+    /// Reads voxels of a computed level; `level` must not be a level of the source.
     void read(int level, const VoxelBox& box, std::span<std::byte> voxels) const;
-    /// Returns whether a brick, one voxel around it, and the finer levels below contain nothing stored.
+    /// Whether nothing is stored in a brick, one voxel around it, and the finer levels below.
     bool is_gap(int level, const Size3& brick) const;
-    /// Returns the range of voxels in a gap and of the voxels below them; lower > upper if none is finite.
+    /// Returns the range of voxels in a gap, on all levels; lower > upper if none is finite.
     ValueRange fills() const { return fills_; }
 
 private:
@@ -39,7 +39,7 @@ private:
         std::vector<std::byte> voxels{};
 
         void add(const Size3& tile);
-        /// Adds all tiles that intersect a box of voxels.
+        /// Adds all tiles that a box of voxels intersects.
         void add_all_in(const VoxelBox& box);
     };
     const Level& at(int level) const { return levels_[size_t(level - first_)]; }

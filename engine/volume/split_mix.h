@@ -16,7 +16,7 @@ public:
         mixed = (mixed ^ (mixed >> 27)) * 0x94d049bb133111ebu;
         return mixed ^ (mixed >> 31);
     }
-    /// A number below `count`, each as likely as the others up to 2^-32. `count` is at least 1 and below 2^32.
+    /// Returns a number below `count`; probabilities are equal up to 2^-32. `count` is at least 1 and below 2^32.
     uint32_t below(uint32_t count) { return uint32_t(((next() >> 32) * count) >> 32); }
 
 private:

@@ -9,10 +9,10 @@
 namespace shvr {
 namespace {
 
-/// Bits per axis of a key. Positions of chunks need 14: a side has at most MAX_SIDE voxels.
+/// Bits per axis of a key. 14 would suffice for chunks, since a side has at most MAX_SIDE voxels.
 constexpr int KEY_BITS = 20;
 
-/// Removes duplicates, since several small blocks intersect the same chunk.
+/// Removes duplicates, which occur because several small blocks intersect the same chunk.
 void make_unique(std::vector<uint64_t>& keys)
 {
     std::ranges::sort(keys);
@@ -20,7 +20,7 @@ void make_unique(std::vector<uint64_t>& keys)
     keys.erase(repeated.begin(), repeated.end());
 }
 
-/// Returns the first chunk that is not listed, in x-fastest order.
+/// Returns the first chunk that is not listed, with x fastest.
 std::optional<Size3> first_absent(const StoredChunks& chunks)
 {
     for (size_t i = 0; i <= chunks.keys.size() && double(i) < chunks.all(); ++i) {

@@ -15,7 +15,7 @@ namespace {
 constexpr double MAX_CODE = 65535.0;
 constexpr double MAX_END = 0.5 * std::numeric_limits<double>::max() / 1.001;
 
-/// Every spelling, in lower case, with single spaces between words and without MetaImage's prefix "MET_".
+/// All spellings, in lower case, with single spaces between words and without MetaImage's prefix "MET_".
 constexpr std::pair<const char*, VoxelType> SPELLINGS[] = {
     {"uint8", VoxelType::uint8},
     {"uint8_t", VoxelType::uint8},
@@ -151,7 +151,7 @@ int64_t voxel_count(const VolumeInfo& info)
 
 uint32_t IntensityWindow::threshold_code(double threshold) const
 {
-    // The search uses `intensity_of`, as callers do to compare voxels, so rounding in `code_of` cannot be off by one.
+    // Searches with `intensity_of`, with which callers compare, so that rounding in `code_of` has no influence.
     uint32_t below = 0;
     uint32_t above = 65536;
     while (below < above) {
@@ -175,7 +175,7 @@ IntensityWindow window_for(VoxelType type, double minimum, double maximum)
         const bool is_exact = range <= MAX_CODE || type == VoxelType::uint16 || type == VoxelType::int16;
         if (is_exact) return {lower, std::floor(MAX_CODE / std::clamp(range, 1.0, MAX_CODE))};
     }
-    // Two doubles may be so far apart that their difference is infinite, or so close that its inverse is infinite.
+    // The difference of two doubles can be infinite, and so can the inverse of their difference.
     const double lower = std::clamp(minimum, -MAX_END, MAX_END);
     const double range = std::clamp(maximum, -MAX_END, MAX_END) - lower;
     return {lower, range > 0.0 ? std::min(MAX_CODE / range, MAX_END) : MAX_CODE};
@@ -188,7 +188,7 @@ IntensityWindow window_for(VoxelType type, const VolumeStatistics& statistics)
     if (is_partial && type == VoxelType::int16) return window_for(type, -32768.0, 32767.0);
     constexpr double MAX_WIDENING = 5.0;
     const auto [lower, upper] = statistics.range();
-    // Both terms are halved, because doubles may lie so far apart that their difference is infinite.
+    // Computes halves, since the difference of two doubles can overflow to infinity.
     const double half_all = 0.5 * statistics.maximum - 0.5 * statistics.minimum, half = 0.5 * upper - 0.5 * lower;
     const bool is_exact = !is_float(type) && 2.0 * half_all <= MAX_CODE;
     if (is_exact || half_all <= MAX_WIDENING * half) return window_for(type, statistics.minimum, statistics.maximum);
@@ -197,7 +197,7 @@ IntensityWindow window_for(VoxelType type, const VolumeStatistics& statistics)
 
 bool has_exact_codes(VoxelType type, const VolumeStatistics& statistics)
 {
-    if (bytes_of(type) <= 2) return true;  // the window spans all values of the volume, or of the volume's type
+    if (bytes_of(type) <= 2) return true;  // the window then covers all values, or the whole range of the type
     const bool is_partial = statistics.measured_level > 0 || statistics.sampled_voxels > 0;
     return !is_float(type) && !is_partial && statistics.maximum - statistics.minimum <= MAX_CODE;
 }

@@ -3,7 +3,7 @@
 // R16_UNORM codes of the device.
 //
 // Spaces. "voxel": index space of level 0; the centre of voxel i lies at i + 0.5. "volume": physical, in the file's
-// unit, volume = voxel * spacing. Axis order is x, y, z with x fastest in memory. All counts are 64 bit.
+// unit, volume = voxel * spacing. The order of axes is x, y, z, with x fastest in memory. All counts have 64 bits.
 
 #include <cstddef>
 #include <cstdint>
@@ -28,8 +28,8 @@ inline constexpr const char* VOXEL_TYPE_NAMES = "uint8, int8, uint16, int16, uin
 size_t bytes_of(VoxelType type);
 const char* name_of(VoxelType type);
 bool is_float(VoxelType type);
-/// Parses "uint8", "UCHAR", "unsigned short", "MET_SHORT", ... as spelled in header formats; null if unknown. Integers
-/// of 64 bits are unknown: intensities are computed in double, which cannot represent all of them.
+/// Parses spellings of file headers, such as "uint8", "UCHAR", "unsigned short" and "MET_SHORT"; null if unknown.
+/// 64-bit integers count as unknown, since intensities are computed in double, which cannot represent all of them.
 std::optional<VoxelType> voxel_type_of(const std::string& name);
 
 /// A half-open box of voxels, [lower, upper).
@@ -40,7 +40,7 @@ struct VoxelBox {
     bool operator==(const VoxelBox&) const = default;
 };
 
-/// Origin of a spacing or a unit: unstated, from the file, or from the user (--spacing, --unit, a session).
+/// Where a spacing or a unit comes from: assumed, from the file, or given by the user (--spacing, --unit, a session).
 enum class Provenance { assumed, file, given };
 /// "assumed", "file", "given".
 const char* name_of(Provenance provenance);
@@ -61,28 +61,28 @@ struct VolumeInfo {
     glm::dmat3 directions{1.0};
     glm::dvec3 origin{0.0};
     std::string frame{};
-    /// The fill value that the user states; infinite: none; null: fill values are detected by their gap (outliers.h).
+    /// The fill value that the user states; infinite: no such value; null: fill values are detected (outliers.h).
     std::optional<double> nodata{};
-    /// The reader's assumptions and omissions, one sentence each ("no spacing stated; 1 voxel assumed").
+    /// What the reader assumed or left out, one sentence each ("no spacing stated; 1 voxel assumed").
     std::vector<std::string> warnings{};
 };
 
-/// Returns whether the file states a position. If not, `frame` is empty, `directions` and `origin` have their defaults.
+/// Returns whether the file states a position. If not, `frame` is empty, and `directions` and `origin` are defaults.
 bool states_place(const VolumeInfo& info);
-/// Returns whether these are three right-handed unit vectors (orthogonal or not), up to 7-digit text rounding.
+/// Returns whether the columns are right-handed unit vectors (orthogonal or not), within the rounding of 7-digit texts.
 bool are_axes(const glm::dmat3& directions);
 
 /// Returns size.x * size.y * size.z; fails if the product exceeds 63 bits. Each side must be 1 ... 2^20.
 int64_t voxel_count(const VolumeInfo& info);
 
-/// Smallest and largest finite value; `lower > upper` if there is none.
+/// The smallest and the largest finite value; `lower > upper` if there is no finite value.
 struct ValueRange {
     double lower = 0.0;
     double upper = 0.0;
     bool operator==(const ValueRange&) const = default;
 };
 
-/// A value and the number of voxels that have it.
+/// A value, and the number of voxels that have it.
 struct ValueCount {
     double value = 0.0;
     int64_t voxels = 0;
@@ -95,18 +95,18 @@ struct VolumeStatistics {
     double maximum = 0.0;
     double mean = 0.0;  ///< without fill values
     int64_t not_finite = 0;
-    /// 256 bins over range(); values outside the range count in the first or last bin, fill values in none.
+    /// 256 bins over range(). Values outside the range count in the first or last bin; fill values are not counted.
     std::vector<int64_t> histogram{};
-    /// The extremes of the values other than fill values and a few outliers: broken, dead and hot voxels (outliers.h).
-    /// Null if there are neither fill values nor outliers.
+    /// The range of all values except fill values and a few outliers: broken, dead and hot voxels (outliers.h). Null if
+    /// there are neither fill values nor outliers.
     std::optional<ValueRange> bulk{};
     int64_t beyond_bulk = 0;         ///< number of outliers that are not fill values
     std::vector<ValueCount> fill{};  ///< values that stand for "no data", however frequent
     bool fill_is_given = false;      ///< by the user, not found
-    int measured_level = 0;          ///< the level that was measured; if above 0, its voxels are means
-    int64_t sampled_voxels = 0;      ///< above 0: all members were estimated from a sample of this many voxels
+    int measured_level = 0;          ///< above 0: a coarser level was measured, whose voxels are means
+    int64_t sampled_voxels = 0;      ///< above 0: everything was estimated from this many voxels
 
-    /// The range used for pictures, thresholds and the histogram.
+    /// The range on which pictures, thresholds and the histogram are based.
     ValueRange range() const { return bulk.value_or(ValueRange{minimum, maximum}); }
 };
 
@@ -120,17 +120,17 @@ struct IntensityWindow {
     double upper() const { return lower + 65535.0 / codes_per_unit; }
     double code_of(double intensity) const { return (intensity - lower) * codes_per_unit; }
     double intensity_of(double code) const { return lower + code / codes_per_unit; }
-    /// The smallest code whose intensity is at or above `threshold` (inclusive); 65536 if there is none.
+    /// Returns the smallest code whose intensity is at least `threshold`; 65536 if there is none.
     uint32_t threshold_code(double threshold) const;
     bool operator==(const IntensityWindow&) const = default;
 };
 
-/// Returns the window over all values; or over range() if outliers leave the others less than a fifth of the codes and
-/// not every integer has its own. For 16-bit integers measured in part, the type's: other voxels may exceed the range.
+/// Returns the window of all values, or of range() if outliers would leave the others less than a fifth of the codes
+/// and not every integer has its own code. For 16-bit integers measured in part: the type's range (others may exceed).
 IntensityWindow window_for(VoxelType type, const VolumeStatistics& statistics);
 IntensityWindow window_for(VoxelType type, double minimum, double maximum);
-/// Returns whether every voxel value of such a volume has its own code in its window, so that comparing codes gives the
-/// same results as comparing intensities.
+/// Returns whether every value of such a volume has its own code in its window. If so, comparing codes gives the same
+/// results as comparing intensities.
 bool has_exact_codes(VoxelType type, const VolumeStatistics& statistics);
 
 }  // namespace shvr

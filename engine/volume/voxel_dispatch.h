@@ -1,5 +1,5 @@
 #pragma once
-// Calls a generic function with a voxel of the C++ type that a VoxelType names:
+// Calls a generic function with a voxel of the C++ type for a VoxelType:
 //
 //     with_voxel_type(info.type, [&]<class T>(T) { work_on<T>(voxels); });
 

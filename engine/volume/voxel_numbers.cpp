@@ -12,7 +12,7 @@ template <class T>
 T to_voxel(double value)
 {
     if constexpr (std::is_floating_point_v<T>) return static_cast<T>(value);
-    // Without SSE 4.1, std::floor is a function call.
+    // A floor without std::floor, which is a function call on processors without SSE 4.1.
     const double raised = value + 0.5;
     const auto whole = int64_t(raised);
     return static_cast<T>(double(whole) > raised ? whole - 1 : whole);

@@ -1,5 +1,5 @@
 #pragma once
-// Converts voxels of any type to doubles, which can hold every value of every type, and back. Any thread.
+// Converts voxels of any type to and from doubles, which can represent all values of all types. Any thread.
 
 #include <span>
 
@@ -7,11 +7,11 @@
 
 namespace shvr {
 
-/// Loads values.size() voxels of `type`, aligned or not.
+/// Loads values.size() voxels of `type`, whose address need not be aligned.
 void load_voxels(VoxelType type, const std::byte* voxels, std::span<double> values);
 
 /// Stores values as voxels of `type`. Integers are rounded to nearest, halves up. Values must be finite and, for
-/// integer types, within the range of `type`.
+/// integer types, lie within the range of `type`.
 void store_voxels(VoxelType type, std::span<const double> values, std::byte* voxels);
 
 }  // namespace shvr

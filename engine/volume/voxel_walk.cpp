@@ -9,7 +9,7 @@ namespace {
 
 constexpr int64_t SLAB_BYTES = int64_t{32} << 20;
 constexpr int64_t PIECES = 256, PIECE_VOXELS = int64_t{1} << 18;
-/// Maximum number of blocks to list: listing more would take longer than reading a sample should.
+/// If more blocks are stored, they are not listed: listing would take longer than reading a sample should.
 constexpr int64_t MAX_BLOCKS_SAMPLED = int64_t{1} << 20;
 
 int64_t count_of(const Size3& extent)
@@ -17,8 +17,8 @@ int64_t count_of(const Size3& extent)
     return extent.x * extent.y * extent.z;
 }
 
-/// Slabs are whole slices, or some rows of a slice if a slice is too large. If the file stores blocks, slabs are as
-/// thick as a block and consist of rows of whole blocks.
+/// Returns the size of a slab: whole slices, or some rows of a slice if a slice is too large. If the file stores
+/// blocks, slabs are as thick as a block and consist of rows of whole blocks.
 Size3 slab_of(const VolumeSource& source)
 {
     const Size3 size = source.info().size;
@@ -31,7 +31,7 @@ Size3 slab_of(const VolumeSource& source)
     return {size.x, std::min(rows, size.y), std::min(slices, size.z)};
 }
 
-/// Returns a multiple of `block` that is at least `wanted`, clamped to `size`.
+/// Rounds `wanted` up to a multiple of `block`, but not above `size`.
 int64_t whole_blocks(int64_t wanted, int64_t block, int64_t size)
 {
     return std::clamp((wanted + block - 1) / block * block, int64_t{1}, size);
@@ -76,7 +76,7 @@ VoxelWalk VoxelWalk::stored(const VolumeSource& source, StoredBlocks blocks)
 
 namespace {
 
-/// Keeps every nth block, so that about as many voxels remain as in other samples.
+/// Keeps every n-th block, such that about `voxels` voxels remain.
 void thin_out(std::vector<glm::ivec3>& blocks, int64_t voxels)
 {
     const auto count = int64_t(blocks.size());
@@ -104,7 +104,7 @@ VoxelWalk VoxelWalk::sample(const VolumeSource& source)
     Size3 piece(0, block.y, block.z);
     piece.x = whole_blocks(PIECE_VOXELS / (block.y * block.z), block.x, size.x);
     piece.y = whole_blocks(PIECE_VOXELS / (piece.x * block.z), block.y, size.y);
-    // Pieces are evenly spaced along z; along y and x, they follow Roberts' sequence R2: no gaps for any count.
+    // Pieces are evenly spaced along z. Along y and x they follow Roberts' R2 sequence, which is even for any count.
     const Size3 places = (size - piece) / block + int64_t{1};
     walk.boxes_.emplace();
     for (int64_t i = 0; i < PIECES; ++i) {
@@ -115,7 +115,7 @@ VoxelWalk VoxelWalk::sample(const VolumeSource& source)
         walk.boxes_->push_back({lower, glm::min(lower + piece, size)});
         walk.voxels_ += count_of(walk.boxes_->back().size());
     }
-    // Boxes are sorted, so that reads advance through the file even if a slice has several pieces.
+    // Sorts boxes by position, so that reads advance through the file even if a slice has several pieces.
     std::ranges::sort(*walk.boxes_, {}, [](const VoxelBox& box) {
         return std::array{box.lower.z, box.lower.y, box.lower.x};
     });

@@ -1,6 +1,6 @@
 #pragma once
-// The traversal of a volume: the voxels from which statistics are computed (all, the stored voxels of a sparse volume,
-// or a sample), and a source that reports a reader's progress.
+// Walks over a volume: which voxels statistics are computed from (all, the stored voxels of a sparse volume, or a
+// sample), and a source that reports how much has been read.
 
 #include <algorithm>
 #include <optional>
@@ -10,38 +10,38 @@
 
 namespace shvr {
 
-/// Boxes of level 0 of a source, in the order in which they are read.
+/// The boxes of level 0 to read, in this order.
 class VoxelWalk {
 public:
-    /// All voxels, in whole rows and in order. A box has at most 32 MiB, but at least one row of blocks.
+    /// All voxels, as whole rows in order. A box has at most 32 MiB, but at least one row of blocks.
     static VoxelWalk all(const VolumeSource& source);
-    /// The voxels of stored blocks; the other voxels count as `rest`.
+    /// The voxels of stored blocks. All other voxels are counted by rest().
     static VoxelWalk stored(const VolumeSource& source, StoredBlocks blocks);
-    /// A sample: evenly spread pieces, or as many voxels of stored blocks; with their share of the unstored voxels.
+    /// A sample: evenly spread pieces, or as many voxels of stored blocks, with their share of unstored ones (rest()).
     static VoxelWalk sample(const VolumeSource& source);
 
     int64_t voxels() const { return voxels_; }  ///< total of all boxes
     int64_t boxes() const;
     VoxelBox box(int64_t index) const;
-    /// Number of further voxels that count but lie in no box; each has the value `fill`.
+    /// Number of voxels that are counted without being read, since all have the value `fill`.
     int64_t rest() const { return rest_; }
     double fill() const { return fill_; }
 
 private:
     Size3 size_{0};
-    Size3 step_{0};                                 ///< size of a box if all voxels are read; x is a whole row
+    Size3 step_{0};                                 ///< size of a box if all voxels are read: x is a whole row
     std::optional<std::vector<VoxelBox>> boxes_{};  ///< null if all voxels are read
     int64_t voxels_ = 0, rest_ = 0;
     double fill_ = 0.0;
 };
 
-/// Returns the number of voxels of the stored blocks inside a volume of `size`.
+/// Returns the number of voxels in stored blocks, clipped to a volume of `size`.
 int64_t voxels_stored(const StoredBlocks& stored, const Size3& size);
 /// Returns the box of a block, clipped to a volume of `size`.
 VoxelBox box_of_block(const StoredBlocks& stored, const glm::ivec3& block, const Size3& size);
 
-/// Wraps a source and reports how much of level 0 has been read, for work that reads every voxel once. `source` and
-/// `progress` must outlive this object. One thread at a time.
+/// Forwards to a source, and reports how much of level 0 has been read, for work that reads every voxel once. `source`
+/// and `progress` must outlive this object. One thread at a time.
 class ToldSource final : public VolumeSource {
 public:
     ToldSource(const VolumeSource& source, const Progress& progress)

@@ -1,12 +1,12 @@
 #pragma once
-// Bodies around the tubes of interest, which no trace follows: stones, which are balls cut by planes, and bits of
-// organic matter, which are tubes. Immutable; any thread may call it.
+// Bodies around the traced tubes: stones, which are balls cut by planes, and bits of organic matter, which are tubes.
+// No trace includes bodies. Immutable; any thread may call it.
 
 #include "engine/volume/phantoms/phantom_model.h"
 
 namespace shvr {
 
-/// Keeps the side of a plane on which the middle of the body's first end lies.
+/// A plane that cuts a body; the side with the centre of the body's first end stays.
 struct Facet {
     glm::dvec3 normal;  ///< unit vector, outwards
     double distance;    ///< voxels from the first end
@@ -14,10 +14,10 @@ struct Facet {
 
 class Bodies {
 public:
-    /// Each body's `Tube::tissue` is its group. `facets` of a body may be empty.
+    /// `Tube::tissue` of a body is its group. `facets[i]` cut body i; may be empty.
     Bodies(std::vector<Tube> bodies, std::vector<std::vector<Facet>> facets, const Size3& size, double blur);
 
-    /// Returns the tissue at a position where `around` would be without bodies. The last body covers others.
+    /// Returns the tissue at a position; `around` is the tissue there without bodies. Later bodies cover earlier ones.
     Tissue over(Tissue around, const glm::dvec3& voxel) const;
 
 private:

@@ -1,5 +1,5 @@
-// A flower head: stem bundles that continue as abaxial veins along the bowl and into the bracts, adaxial veins below
-// the receptacle, and veins that descend from florets.
+// A phantom of a flower head: stem bundles that continue as abaxial veins along the bowl and into the bracts, adaxial
+// veins below the receptacle, and veins that descend from florets.
 
 #include <cmath>
 #include <optional>
@@ -125,7 +125,7 @@ void Capitulum::add_abaxial()
     }
 }
 
-/// Adds the leaf around a bract's vein, from the vein's `base` to its `tip`: three flat strips in a row.
+/// Adds the leaf around a bract's vein from `base` to `tip`, made of three flat strips in a row.
 void Capitulum::add_bract(double turns, size_t base, size_t tip)
 {
     const glm::dvec2 out = direction_of(turns);
@@ -143,7 +143,7 @@ void Capitulum::add_bract(double turns, size_t base, size_t tip)
         }
 }
 
-/// Adds adaxial veins, each from its outer end inwards, along a radius or in waves around it.
+/// Adds the adaxial veins. Each runs inwards from its outer end, straight or in waves.
 void Capitulum::add_spokes()
 {
     const double thick = radius(0.024);
@@ -152,7 +152,7 @@ void Capitulum::add_spokes()
     for (int i = 0; i < species_.spokes; ++i) {
         const double turns = (double(i) + 0.2 * (random(SPOKES, i) - 0.5)) / species_.spokes;
         const double phase = random(WAVES, i);
-        // Every second vein of the pattern `joined` ends half-way along, at its neighbour.
+        // In the pattern `joined`, every second vein ends half-way, where it joins its neighbour.
         const double from = is_joined && i % 2 == 1 ? std::max(0.34, adaxial_from()) : adaxial_from();
         std::vector<Vein> spoke;
         constexpr int PIECES = 8;
@@ -190,7 +190,7 @@ void Capitulum::add_joins(const std::vector<std::vector<Vein>>& spokes)
     }
 }
 
-/// Adds a node below each floret, and joins it to the two nearest nodes of florets further out on its parastichies.
+/// Adds a node below each floret, and joins it to the two nearest nodes further out on the floret's parastichies.
 void Capitulum::add_net()
 {
     const double thick = radius(0.024);
@@ -215,7 +215,7 @@ void Capitulum::add_net()
         for (size_t i = 0; i < std::min<size_t>(2, later.size()); ++i) model_.link(*nodes[size_t(k)], later[i].second);
     }
     if (!stage_.joins_between) return;
-    // The outermost parastichies end at the abaxial veins below them.
+    // The outermost parastichies join the abaxial veins below them.
     for (const Vein& rim : abaxial_rim_) {
         if (rim.rho > 0.9) continue;
         if (const auto net = nearest(adaxial_, model_.nodes[rim.node].voxel)) model_.link(rim.node, *net);
@@ -224,7 +224,7 @@ void Capitulum::add_net()
 
 void Capitulum::add_florets()
 {
-    // Veins near the axis join veins further out, so florets are added from the rim inwards.
+    // Adds florets from the rim inwards, since veins near the axis join veins further out.
     for (int k = spec_.florets - 1; k >= 0; --k)
         if (floret_place(spec_, k).rho >= stage_.florets_from) add_floret(k);
 }
@@ -234,7 +234,7 @@ void Capitulum::add_floret(int k)
     const auto [turns, rho] = floret_place(spec_, k);
     const double thick = radius(0.018);
     const double surface = receptacle_height(species_, rho);
-    // Florets mature from the rim inwards; veins of florets near the middle are faint.
+    // Florets mature from the rim inwards, so the veins of florets near the middle are faint.
     const double maturity = std::clamp((rho - stage_.florets_from) / 0.5, 0.0, 1.0);
     const double seen = GROUND_TISSUE + (VEIN - GROUND_TISSUE) * (0.5 + 0.5 * maturity);
     const double body = 0.55 / std::sqrt(double(spec_.florets));
@@ -257,7 +257,7 @@ void Capitulum::add_floret(int k)
     floret_roots_.push_back({root, rho});
 }
 
-/// Returns the tissue: ground tissue between receptacle and bowl and in the stem, a dermal layer on it, air outside.
+/// Returns a function for the tissue: ground tissue inside head and stem, a dermal layer on the surface, air outside.
 std::function<Tissue(const glm::dvec3&)> Capitulum::tissue() const
 {
     return [species = species_, middle = middle_, scale = scale_, blur = spec_.flaws.blur](const glm::dvec3& voxel) {

@@ -1,6 +1,6 @@
 #pragma once
-// Forms of flower heads: species and stages of the thesis (5.2, figures 5.3 and 5.4), as parameters. Unit of length:
-// radius of the head. Heights are above the volume's middle; rho is the distance from the axis. Pure functions.
+// Shapes of flower heads: species and stages of the thesis (5.2, figures 5.3 and 5.4), as parameters. Unit of length:
+// radius of the head. Heights are above the volume's middle. rho is the distance from the axis. Pure functions.
 
 #include <algorithm>
 #include <array>
@@ -19,28 +19,28 @@ enum class AdaxialPattern { straight, joined, net };
 struct CapitulumSpecies {
     const char* name;
     AdaxialPattern pattern;
-    int spokes;            ///< number of adaxial veins; 0 for a net
-    double rim, dome;      ///< height of the receptacle's edge; height of the receptacle's middle above its edge
-    double adaxial_inner;  ///< rho of the inner end of adaxial veins
-    double depth, droop;   ///< depth of adaxial veins below the receptacle's edge; its increase per radius inwards
+    int spokes;            ///< number of adaxial veins; 0 for the pattern `net`
+    double rim, dome;      ///< height of the receptacle's edge; height of its middle above its edge
+    double adaxial_inner;  ///< rho at the inner end of adaxial veins
+    double depth, droop;   ///< depth of adaxial veins below the receptacle's edge; its increase per unit of rho inwards
 };
 
-/// Species whose heads are a flat, a depressed and an elongated sphere.
+/// Species whose heads are a flat, a depressed and an elongated sphere, in this order.
 inline constexpr CapitulumSpecies CAPITULUM_SPECIES[] = {
     {"gerbera", AdaxialPattern::straight, 12, 0.15, 0.12, 0.28, 0.10, 0.0},
     {"helianthus", AdaxialPattern::joined, 16, 0.15, -0.18, 0.06, 0.06, 0.28},
     {"bellis", AdaxialPattern::net, 0, -0.05, 0.75, 0.08, 0.10, 0.0},
 };
 
-/// The parts that exist at a stage; numbers are values of rho. Veins of florets exist only outside `florets_from`.
+/// The parts that exist at a stage of development. Numbers are values of rho; florets have veins beyond `florets_from`.
 struct CapitulumStage {
     char name;
-    double adaxial_from, adaxial_to;  ///< equal: no adaxial veins; `adaxial_from` is at least the species' inner end
+    double adaxial_from, adaxial_to;  ///< equal: no adaxial veins; `adaxial_from` >= the species' `adaxial_inner`
     double florets_from;
-    bool joins_rim;  ///< joins florets of the rim with abaxial veins
-    /// Joins other florets with adaxial veins or, near the axis, with each other; and adaxial with abaxial veins.
+    bool joins_rim;  ///< joins florets' veins at the rim to abaxial veins
+    /// Joins other florets' veins to adaxial veins or, near the axis, to each other; and adaxial to abaxial veins.
     bool joins_between;
-    /// Middle and tip of bracts, which first cover the head, and grow outwards with it: rho, height above the rim.
+    /// Middle and tip of bracts, as rho and height above the rim. Bracts first cover the head and later spread.
     std::array<glm::dvec2, 2> bract;
 };
 inline constexpr CapitulumStage CAPITULUM_STAGES[] = {
@@ -53,7 +53,7 @@ inline constexpr CapitulumStage CAPITULUM_STAGES[] = {
 /// Outside it, florets join abaxial veins.
 inline constexpr double RIM_FROM = 0.86;
 
-/// Heights of the receptacle's surface, of abaxial veins in the bowl below it, and of adaxial veins between them.
+/// Heights of the receptacle's surface, of abaxial veins in the bowl, and of adaxial veins between these two.
 inline double receptacle_height(const CapitulumSpecies& species, double rho)
 {
     return species.rim + species.dome * (1.0 - rho * rho);
@@ -67,15 +67,15 @@ inline double adaxial_height(const CapitulumSpecies& species, double rho)
     return receptacle_height(species, rho) - species.depth - species.droop * (1.0 - rho);
 }
 
-/// The angle between successive florets, or successive pairs of opposite florets, in turns.
+/// Returns the angle between successive florets, or for "bijugate" between successive pairs of florets, in turns.
 double divergence_turns(const PhantomSpec& spec);
 struct FloretPlace {
     double turns, rho;
 };
-/// Returns floret k of n, counted from the axis outwards (Vogel 1979: equal areas). The angles of successive florets,
-/// or of successive pairs of opposite florets in a bijugate head, differ by the divergence angle.
+/// Returns the place of floret k of n, counted from the axis outwards, such that each has an equal area (Vogel 1979).
+/// Successive florets, or in a bijugate head successive pairs of opposite florets, differ by the divergence angle.
 FloretPlace floret_place(const PhantomSpec& spec, int k);
-/// Returns the possible differences of the numbers of two florets that are neighbours on a parastichy, ascending.
+/// Returns by how much the numbers of two florets that are neighbours on a parastichy can differ, ascending.
 std::vector<int> parastichy_steps(const PhantomSpec& spec);
 
 }  // namespace shvr

@@ -1,4 +1,4 @@
-// A helix around the middle of the volume, right-handed, along z. Length, curvature and torsion have closed forms.
+// A phantom: a right-handed helix around the volume's z axis, whose length, curvature and torsion are known exactly.
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,7 @@ PhantomModel make_helix(const PhantomSpec& spec)
     const double side = double(std::min({spec.size.x, spec.size.y, spec.size.z}));
     const double radius = 0.30 * side, pitch = 0.24 * side, tube = std::max(1.0, 0.03 * side);
     const glm::dvec3 middle = 0.5 * glm::dvec3(spec.size);
-    // The seed turns the helix, so that it meets the voxels' grid elsewhere.
+    // The seed rotates the helix, so that each seed samples it at other positions.
     const double start = spec.seed == 1 ? 0.0 : random_unit(spec.seed, 41, 0);
 
     PhantomModel model;

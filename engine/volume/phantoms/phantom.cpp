@@ -36,7 +36,7 @@ VolumeInfo info_of(const PhantomSpec& spec, VoxelType type)
     return info;
 }
 
-/// Visits the centres of a box's voxels in reading order.
+/// Visits the centres of a box's voxels, x fastest.
 template <class Visit>
 void each_voxel(const VoxelBox& box, const Visit& visit)
 {

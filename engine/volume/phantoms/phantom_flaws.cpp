@@ -21,7 +21,7 @@ uint32_t hash_at(uint32_t seed, FlawRandom purpose, const Size3& at)
     return hash_of(mixed(seed) ^ purpose, uint32_t(at.x), uint32_t(at.y), uint32_t(at.z));
 }
 
-/// Returns nearly normal noise: the sum of the hash's four bytes, scaled to a standard deviation of 1.
+/// Returns approximately normal noise with standard deviation 1: the scaled sum of the hash's four bytes.
 double normal_of(uint32_t hash)
 {
     constexpr double DEVIATION = 147.8016689;
@@ -46,10 +46,10 @@ FlawedIntensity::FlawedIntensity(const PhantomFlaws& flaws, const Size3& size, u
     }
 }
 
-/// Adds bright balls, at most one in each cell of 8^3 voxels.
+/// Adds bright balls. Each cell of 8^3 voxels has at most one.
 double FlawedIntensity::with_specks(double intensity, const glm::dvec3& voxel) const
 {
-    constexpr double CELL = 8.0, MEAN_BALL = 25.7;  // MEAN_BALL: voxels in a ball, averaged over the range of radii
+    constexpr double CELL = 8.0, MEAN_BALL = 25.7;  // MEAN_BALL: voxels of a ball, as a mean over all radii
     const Size3 cell(glm::floor(voxel / CELL));
     uint32_t hash = hash_at(seed_, SPECKS, cell);
     if (unit_of(hash) * MEAN_BALL * 100.0 >= flaws_.specks * CELL * CELL * CELL) return intensity;
@@ -63,7 +63,7 @@ double FlawedIntensity::with_specks(double intensity, const glm::dvec3& voxel) c
     return std::max(intensity, GROUND_TISSUE + CONTRAST * cover_of(std::sqrt(squared) - radius, flaws_.blur));
 }
 
-/// Returns the height of the rings at a voxel: 0 in two of three rings; a detector row covers four slices.
+/// Returns the height of the rings at a voxel. Two thirds of the rings have height 0; a ring spans four slices.
 double FlawedIntensity::rings(const glm::dvec3& voxel) const
 {
     const double dx = voxel.x - centre_.x, dy = voxel.y - centre_.y;
@@ -76,7 +76,7 @@ double FlawedIntensity::rings(const glm::dvec3& voxel) const
     return height(ring) * (1.0 - share) + height(ring + 1.0) * share;
 }
 
-/// Returns streaks: planes along z, three voxels thick, fading on both sides within 1/8 of the volume's radius.
+/// Returns the streaks at a voxel: planes along z, three voxels thick, which fade within 1/8 of the volume's radius.
 double FlawedIntensity::streaks(const glm::dvec3& voxel) const
 {
     double sum = 0.0, sign = 1.0;

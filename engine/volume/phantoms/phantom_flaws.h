@@ -1,5 +1,5 @@
 #pragma once
-// Flaws of scanners and samples, as functions of the position. Any thread may call them.
+// Flaws of scanners and samples, as functions of the position. Any thread may call these.
 
 #include "engine/volume/phantoms/phantom.h"
 
@@ -9,7 +9,7 @@ class FlawedIntensity {
 public:
     FlawedIntensity(const PhantomFlaws& flaws, const Size3& size, uint32_t seed);
 
-    /// Returns the value measured at the centre of a voxel whose true intensity is `intensity`.
+    /// Returns the value that a scan has at the centre of a voxel whose true intensity is `intensity`.
     double operator()(double intensity, const glm::dvec3& voxel) const;
 
 private:
@@ -23,7 +23,7 @@ private:
     };
     PhantomFlaws flaws_;
     glm::dvec3 centre_;
-    double radius_;  ///< voxels; half of the shorter side of a slice
+    double radius_;  ///< in voxels: half of the shorter side of a slice
     uint32_t seed_;
     std::vector<Streak> streaks_;
 };

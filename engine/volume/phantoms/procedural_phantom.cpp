@@ -7,7 +7,7 @@ namespace shvr {
 
 namespace {
 
-/// A volume whose voxels are the colour groups at the voxels' centres.
+/// A volume in which the value of a voxel is the colour group at its centre.
 class GroupSource final : public VolumeSource {
 public:
     GroupSource(VolumeInfo volume, std::function<uint8_t(const glm::dvec3&)> group)

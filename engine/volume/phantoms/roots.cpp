@@ -1,6 +1,6 @@
-// Roots in soil (thesis, figure 5.5): thick, long tubes below a shoot, seen in fragments, among stones that touch them
-// and bits of organic matter that are as bright. Two more roots come from elsewhere: one passes a root at a distance of
-// 1.5 voxels, one is fused with another root. Positions are fractions of the volume's shortest side.
+// A phantom of roots in soil (thesis, figure 5.5): thick, long tubes below a shoot, seen in fragments, among stones
+// that touch them and bits of organic matter of equal brightness. Two more roots belong to other plants: one passes a
+// root at a distance of 1.5 voxels, one is fused with another root. Positions are fractions of the shortest side.
 
 #include <cmath>
 #include <optional>
@@ -18,7 +18,7 @@ constexpr uint8_t MAIN_ROOT = 1, LATERAL_ROOT = 2, FOREIGN_ROOT = 3;
 constexpr int MAIN_ROOTS = 5, ROOT_PIECES = 12;
 constexpr double SOIL_SURFACE = 0.84;
 
-/// A mixture of grains, clods and pores; its brightest parts reach the intensity of the faintest roots.
+/// Returns the soil at a position: a mixture of grains, clods and pores. Its brightest parts equal faint roots.
 Tissue soil_at(const glm::dvec3& place, uint32_t seed, double softness)
 {
     const double height = place.z - SOIL_SURFACE - 0.04 * (value_noise(seed + 1, place * 9.0) - 0.5);
@@ -70,7 +70,7 @@ private:
         const double z = 2.0 * random(purpose, index, of) - 1.0;
         return glm::dvec3(std::sqrt(1.0 - z * z) * direction_of(random(purpose, index, of + 1)), z);
     }
-    /// Brightness changes along a root: it dries in places.
+    /// Returns the brightness of a root at a node; it varies, because roots dry in places.
     double brightness(size_t node) const { return 150.0 + 50.0 * (random(ROOT_BRIGHTNESS, node) - 0.5); }
     size_t add_next(size_t from, const glm::dvec3& place, double thick, uint8_t group)
     {
@@ -85,7 +85,7 @@ private:
     void add_stone(size_t i);
     void add_bit(size_t i);
 
-    /// The tube of a root nearest to a position, with its distance.
+    /// Returns the tube of the root nearest to a position, with its distance.
     std::pair<const Tube*, TubeDistance> nearest_root(const glm::dvec3& at) const
     {
         std::pair<const Tube*, TubeDistance> nearest{nullptr, {1e9, 0.0}};
@@ -99,12 +99,12 @@ private:
     double scale_;  ///< voxels
     glm::dvec3 corner_;
     PhantomModel model_;
-    std::array<std::vector<size_t>, MAIN_ROOTS> main_;  ///< nodes of each main root, from the crown
+    std::array<std::vector<size_t>, MAIN_ROOTS> main_;  ///< nodes of each main root, starting at the crown
     std::vector<Tube> bodies_;
     std::vector<std::vector<Facet>> facets_;
 };
 
-/// Each main root keeps to its own sector around the crown.
+/// Adds the main roots, each in its own sector around the crown.
 void Roots::add_roots()
 {
     const size_t shoot = model_.add_node(voxel({0.5, 0.5, 0.95}), radius(0.036), MAIN_ROOT);
@@ -140,7 +140,7 @@ void Roots::add_lateral(size_t from, double turns, size_t number)
     }
 }
 
-/// Adds a root from another plant that runs next to three pieces of a main root, and then leaves it.
+/// Adds a root of another plant, which runs next to three pieces of a main root and then leaves it.
 void Roots::add_foreign(size_t root, double apart_voxels, double apart_radii)
 {
     const double thick = radius(0.016);
@@ -164,7 +164,7 @@ void Roots::add_foreign(size_t root, double apart_voxels, double apart_radii)
     add(out);
 }
 
-/// Adds a stone; the first ones touch roots. A plane keeps each outside the roots.
+/// Adds a stone; the first stones touch roots. Planes cut off those parts that would lie in a root.
 void Roots::add_stone(size_t i)
 {
     const double size = scale_ * (0.022 + 0.050 * random(STONES, i) * random(STONES, i, 1));
@@ -191,7 +191,7 @@ void Roots::add_stone(size_t i)
     facets_.push_back(std::move(facets));
 }
 
-/// Adds a bit of organic matter, such as a piece of straw, unless it would lie in a root.
+/// Adds a bit of organic matter, such as a piece of straw, unless it would intersect a root.
 void Roots::add_bit(size_t i)
 {
     const double thick = scale_ * (0.006 + 0.010 * random(BITS, i)),

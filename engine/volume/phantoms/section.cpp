@@ -1,6 +1,6 @@
-// A part of a flower head between its centre and its rim, as in the thesis's study (chapter 6): adaxial veins that run
-// outwards (x), florets' veins that descend to them from the receptacle above (z), joins between these two kinds of
-// veins, and bundles that are joined to neither. Positions are fractions of the volume's shortest side.
+// A phantom of a part of a flower head between its centre and its rim, as in the thesis's study (chapter 6): adaxial
+// veins that run outwards (x), veins that descend to them from the florets (z), joins between these two kinds, and
+// bundles that are joined to neither. Positions are fractions of the volume's shortest side.
 
 #include <array>
 #include <cmath>
@@ -14,11 +14,11 @@ namespace {
 enum SectionRandom : uint32_t { PLACES = 71, RADII };
 constexpr uint8_t SECTION_ADAXIAL = 2, SECTION_FLORET = 3, SECTION_SEPARATE = 4;
 constexpr double MIN_RADIUS = 0.0130, MAX_RADIUS = 0.0210;
-/// The ground truth's nodes were sized by hand: they are wider than a vein where it is locally thin. The factors give
-/// the scores of the thesis's truth (table 6.1): .971 for nodes, 1 for internodes, at the mean of two nodes.
+/// Radii of nodes relative to the vein. In the thesis, the nodes of the ground truth were sized by hand, and some are
+/// wider than the vein. These factors reproduce its scores (table 6.1): .971 for nodes and 1 for internodes.
 constexpr double WIDE_NODE = 1.105, NODE = 0.88;
-/// Separate bundles are joined to no others. They fill 29.9 % of all bundles' voxels, for a Dice score of .824: the
-/// square of their radius is this fraction of the other bundles' volume (divided by pi; in cubes of the side).
+/// Separate bundles are joined to no others. To fill 29.9 % of all bundles' voxels, which gives a Dice score of .824,
+/// the square of their radius is this fraction of the other bundles' volume / (pi side).
 constexpr double SEPARATE_SHARE = 0.1527;
 
 class Section {
@@ -60,7 +60,7 @@ private:
     {
         return random_unit(spec_.seed, purpose, uint32_t(index));
     }
-    /// Adds a node at `place`, in fractions of the side. The tube's radius, in `veins_`, differs from the node's.
+    /// Adds a node at `place`, in fractions of the side. Its radius differs from the tube's radius there (`veins_`).
     size_t add_node(const glm::dvec3& place, uint8_t group, bool is_wide)
     {
         const double radius = scale_ * (MIN_RADIUS + (MAX_RADIUS - MIN_RADIUS) * random(RADII, model_.nodes.size()));
@@ -75,7 +75,7 @@ private:
                                 .group = group,
                                 .intensity = {VEIN, VEIN}});
     }
-    /// Adds a segment of `inner` nodes between two nodes. One of them is wide: the second of three, or else the first.
+    /// Adds a segment with `inner` nodes between two nodes. One of them is wide: the second of three, else the first.
     void add_segment(size_t from, size_t to, int inner, uint8_t group, const glm::dvec3& bend)
     {
         const glm::dvec3 a = (model_.nodes[from].voxel - corner_) / scale_;
@@ -106,8 +106,8 @@ private:
     double scale_;  ///< voxels
     glm::dvec3 corner_;
     PhantomModel model_;
-    std::vector<double> veins_;                     ///< radius of the vein at each node
-    std::array<std::vector<size_t>, VEINS> stops_;  ///< nodes of each adaxial vein: its ends and branches, outwards
+    std::vector<double> veins_;                     ///< radius of the vein (not the node) at each node
+    std::array<std::vector<size_t>, VEINS> stops_;  ///< nodes of each adaxial vein: ends and branches, going outwards
 };
 
 void Section::add_adaxial()
@@ -134,7 +134,7 @@ void Section::add_joins()
     add_segment(stops_[1][5], stops_[2][3], 2, SECTION_ADAXIAL, down);
 }
 
-/// Adds the florets themselves, which stand on the receptacle and belong to no group.
+/// Adds the bodies of the florets, which stand on the receptacle and belong to no colour group.
 void Section::add_florets()
 {
     const std::array<std::array<size_t, 2>, 6> below = {{{0, 2}, {0, 4}, {1, 3}, {1, 5}, {2, 2}, {2, 4}}};
@@ -152,8 +152,8 @@ void Section::add_florets()
     }
 }
 
-/// Adds abaxial veins below, and florets' veins that end in the ground tissue: one alone, one at a distance of 1.5
-/// voxels from another floret's vein, and one fused with another floret's vein by half of its radius.
+/// Adds bundles joined to no others: abaxial veins at the bottom, and three florets' veins that end in ground tissue:
+/// one isolated, one 1.5 voxels from another vein, and one overlapping another by half of its radius.
 void Section::add_separate()
 {
     double joined = 0.0;
@@ -166,7 +166,7 @@ void Section::add_separate()
     for (const double y : {0.36, 0.66})
         add_separate_tube({0.06, y, 0.16}, {0.94, y + 0.02 * (random(PLACES, VEINS) - 0.5), 0.10}, radius);
     add_separate_tube({0.62, 0.12, 0.82}, {0.60, 0.10, 0.46}, radius);
-    // Adds a tube next to the upper half of the third and fifth floret's vein, outside the half's larger radius.
+    // Adds a tube next to the upper half of a floret's vein; `apart`: distance between their surfaces in voxels.
     const auto next_to = [&](size_t link, double apart) {
         const auto& [from, to] = model_.links[link];
         const double away = (std::max(veins_[from], veins_[to]) + radius + apart) / scale_;

@@ -1,5 +1,5 @@
-// A stem like that of Arabidopsis thaliana: a ring of long, thin bundles without joins, a voxel or two below the dermal
-// tissue; fibres between them, cortex outside, pith inside. Positions are fractions of the shorter side of a slice.
+// A phantom of a stem like that of Arabidopsis thaliana: a ring of long, thin bundles without joins, a voxel or two
+// below the dermal tissue; fibres between them, cortex outside, pith inside. Positions: in a slice's shorter side.
 
 #include <cmath>
 
@@ -15,14 +15,14 @@ enum StemRandom : uint32_t { STEM_PLACES = 81, STEM_WAVES };
 constexpr uint8_t BUNDLE = 1;
 constexpr int BUNDLES_IN_RING = 8;
 constexpr double OUTER = 0.40, DERMAL_INNER = 0.350, BUNDLE_RADIUS = 0.024, RING = 0.31, PITH = 0.265;
-/// Least and most distance between a bundle and the dermal tissue, which is nearly as bright.
+/// Limits of the distance between a bundle and the dermal tissue, which is nearly as bright as bundles.
 constexpr double MIN_GAP = 0.006, MAX_GAP = 0.030;
 constexpr double STEM_DERMAL = 150.0, CORTEX = 70.0, FIBRES = 100.0, LUMEN = 42.0, WALL = 78.0;
 
-/// The middle of the stem, which is bent, at a height in voxels.
+/// Returns the position of the stem's bent axis at a height in voxels.
 struct StemAxis {
     Size3 size;
-    double scale;  ///< voxels of the shorter side of a slice
+    double scale;  ///< the shorter side of a slice, in voxels
 
     glm::dvec2 operator()(double z) const
     {
@@ -32,7 +32,7 @@ struct StemAxis {
     }
 };
 
-/// Bundles have their nodes within the volume, and go on beyond its first and last slice.
+/// Adds a bundle. Its nodes lie inside the volume; its tube extends beyond the first and the last slice.
 void add_bundle(PhantomModel& model, const PhantomSpec& spec, const StemAxis& axis, int i)
 {
     const auto random = [&](StemRandom purpose, int of) {
@@ -46,7 +46,7 @@ void add_bundle(PhantomModel& model, const PhantomSpec& spec, const StemAxis& ax
     const auto place = [&](double z) {
         const double t = z / double(spec.size.z);
         const double gap = MIN_GAP + (MAX_GAP - MIN_GAP) * (0.5 + 0.5 * direction_of(phase + 1.5 * t).y);
-        // With phloem beside it (add_phloem), the xylem is further in.
+        // Moves the xylem inwards to make room for phloem outside (add_phloem).
         const double rho = axis.scale * (DERMAL_INNER - gap) - (spec.double_tubes ? 2.7 : 1.0) * thick;
         return glm::dvec3(axis(z) + rho * direction_of(turns + twist * t), z);
     };
@@ -67,7 +67,7 @@ Tissue stem_tissue(const StemAxis& axis, uint32_t seed, double blur, const glm::
 {
     const glm::dvec2 d = (glm::dvec2(voxel) - axis(voxel.z)) / axis.scale;
     const double rho = std::sqrt(d.x * d.x + d.y * d.y);
-    // Cells of the pith are wide, those of the cortex narrow; cross walls are left out.
+    // Cells of the pith are wide, cells of the cortex narrow. Walls across the cells are left out.
     const double cell = rho < PITH ? 0.036 : 0.021;
     const double wall = distance_from_cell_wall(seed, d / cell);
     const double soft = std::max(0.16, blur / (axis.scale * cell));

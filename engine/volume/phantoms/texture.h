@@ -1,6 +1,6 @@
 #pragma once
 // Textures of tissues and soil: random functions of a position. They use only sums, products, divisions and square
-// roots. Any thread may call them.
+// roots, which give equal bits everywhere. Any thread may call them.
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace shvr {
 
-/// Returns random values at positions of integer coordinates, blended smoothly between them; 0 <= result < 1.
+/// Returns value noise in [0, 1): random values at integer coordinates, interpolated smoothly between these.
 inline double value_noise(uint32_t seed, const glm::dvec3& place)
 {
     const glm::dvec3 cell = glm::floor(place);
@@ -25,7 +25,7 @@ inline double value_noise(uint32_t seed, const glm::dvec3& place)
                mix(mix(at(0, 0, 1), at(1, 0, 1), t.x), mix(at(0, 1, 1), at(1, 1, 1), t.x), t.y), t.z);
 }
 
-/// Returns the distance from the nearest wall of a tissue of cells, each about 1 wide, seen across their length.
+/// Returns the distance from the nearest cell wall, in a cross-section of elongated cells that are about 1 wide.
 inline double distance_from_cell_wall(uint32_t seed, const glm::dvec2& place)
 {
     const glm::dvec2 cell = glm::floor(place);

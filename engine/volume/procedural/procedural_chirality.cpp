@@ -1,4 +1,4 @@
-// The procedural volume that shows exchanged axes and mirror images.
+// The procedural volume that reveals exchanged axes and mirror images.
 
 #include <algorithm>
 
@@ -7,13 +7,13 @@
 namespace shvr {
 namespace {
 
-/// Intensities by group: the background, the arms along x, y and z, the ball.
+/// Intensities by group: background; arms along x, y and z; ball.
 constexpr double INTENSITIES[] = {20.0, 200.0, 150.0, 100.0, 250.0};
 constexpr uint8_t BALL_GROUP = 4;
 /// Positions as fractions of the volume's size along each axis.
 constexpr glm::dvec3 BALL(0.25, 0.3, 0.35);
 constexpr glm::dvec3 ARM_ENDS(0.85, 0.7, 0.6);
-/// Fraction of the volume's shortest side. The arms meet inside the ball; each is thinner than half of the ball.
+/// Fraction of the volume's shortest side. The arms meet inside the ball, and are less than half as thick as the ball.
 constexpr double ARM_RADIUS = 0.05;
 
 class Chirality final : public ProceduralKind {
@@ -60,7 +60,7 @@ private:
         return 0;
     }
 
-    glm::dvec3 ball_, ends_;  ///< voxel coordinates; the arm along an axis ends at that axis's coordinate of `ends_`
+    glm::dvec3 ball_, ends_;  ///< voxel coordinates; component i of `ends_` is where the arm along axis i ends
     double arm_radius_;       ///< voxels
 };
 

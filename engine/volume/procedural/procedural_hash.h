@@ -1,11 +1,11 @@
 #pragma once
-// The noise of procedural volumes: an integer hash, equal on every machine. Golden test data depend on its constants.
+// The noise of procedural volumes: an integer hash, equal on every machine. Goldens depend on its constants.
 
 #include <cstdint>
 
 namespace shvr {
 
-/// The hash lowbias32 of Chris Wellons' hash prospector (2018); its bias is 0.17.
+/// The hash function lowbias32 from Chris Wellons' hash prospector (2018), with a bias of 0.17.
 constexpr uint32_t mixed(uint32_t bits)
 {
     bits ^= bits >> 16;
@@ -16,7 +16,7 @@ constexpr uint32_t mixed(uint32_t bits)
     return bits;
 }
 
-/// The part of the hash that all positions of a row share: hash_of(seed, x, y, z) == mixed(x ^ row_hash(seed, y, z)).
+/// The part of the hash that is equal for a whole row: hash_of(seed, x, y, z) == mixed(x ^ row_hash(seed, y, z)).
 constexpr uint32_t row_hash(uint32_t seed, uint32_t y, uint32_t z)
 {
     return mixed(y ^ mixed(z ^ mixed(seed + 0x9e3779b9u)));
@@ -27,7 +27,7 @@ constexpr uint32_t hash_of(uint32_t seed, uint32_t x, uint32_t y, uint32_t z)
     return mixed(x ^ row_hash(seed, y, z));
 }
 
-/// Returns a multiple of 2^-24, 0 <= result < 1.
+/// Converts a hash to a multiple of 2^-24 in [0, 1).
 constexpr double unit_of(uint32_t hash)
 {
     return (hash >> 8) * 0x1p-24;

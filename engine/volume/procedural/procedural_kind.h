@@ -1,6 +1,6 @@
 #pragma once
-// One kind of procedural volume, for source_procedural.cpp. Values are 0 ... 250 and depend only on the parameters.
-// Objects are immutable; any thread may call them. A `Rows` object belongs to one thread.
+// The interface of a kind of procedural volume, for source_procedural.cpp. Values are 0 ... 250 and depend only on the
+// parameters. Kinds are immutable, and any thread may call them. A `Rows` object belongs to one thread.
 
 #include <memory>
 #include <optional>
@@ -19,17 +19,17 @@ public:
     virtual glm::dvec3 gradient(const glm::dvec3& voxel) const = 0;
     virtual std::optional<ProceduralTruth> truth() const { return std::nullopt; }
 
-    /// Evaluates the rows of a box; fastest if z varies faster than y. Each value equals, bit for bit, `value` at the
-    /// voxel's centre.
+    /// Evaluates rows of a box; fastest if z varies faster than y. A value equals, bit for bit, the result of `value`
+    /// at the voxel's centre.
     class Rows {
     public:
         virtual ~Rows() = default;
         virtual void evaluate(int64_t y, int64_t z, std::span<double> values) = 0;
     };
     virtual std::unique_ptr<Rows> rows(const VoxelBox& box) const;
-    /// Returns rows of a coarser level, each of whose voxels spans `side` voxels of a volume of `size` voxels. `box`, y
-    /// and z count voxels of the coarser level. Values are evaluated at voxel centres, except for features thinner than
-    /// a voxel (ProceduralSpec).
+    /// Returns the rows of a coarser level, whose voxels span `side` voxels of a volume of `size` voxels along each
+    /// axis. `box`, y and z count voxels of the coarser level. Values are those at voxel centres, except for features
+    /// thinner than a voxel (ProceduralSpec).
     virtual std::unique_ptr<Rows> coarse_rows(double side, const Size3& size, const VoxelBox& box) const;
 };
 

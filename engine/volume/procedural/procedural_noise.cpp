@@ -1,4 +1,4 @@
-// The procedural volumes that are entirely random: speckles and fog.
+// The procedural volumes that are random everywhere: speckles and fog.
 
 #include <array>
 #include <cmath>
@@ -20,8 +20,8 @@ int64_t floor_of(double coordinate)
     return int64_t(std::floor(coordinate));
 }
 
-/// One in four cells of 8^3 voxels, chosen at random, holds one ball. Balls stay a voxel away from their cell's faces,
-/// so no two of them touch: each is one component. All lengths are sixteenths of a voxel, so distances are exact.
+/// A quarter of all cells of 8^3 voxels, chosen at random, contain a ball. Balls stay a voxel away from the faces of
+/// their cell, so that each is a component of its own. Lengths are in sixteenths of a voxel, so distances are exact.
 class Speckles final : public ProceduralKind {
 public:
     Speckles(const Size3& size, uint32_t seed) : size_(size), seed_(seed) {}
@@ -41,7 +41,7 @@ public:
     bool has_gradient() const override { return false; }
     glm::dvec3 gradient(const glm::dvec3&) const override { return glm::dvec3(0.0); }
 
-    /// Returns a node for each ball that lies entirely in the volume; none if the volume has more than MAX_CELLS cells.
+    /// Returns a node for each ball that lies entirely in the volume; null if the volume has more than MAX_CELLS cells.
     std::optional<ProceduralTruth> truth() const override
     {
         ProceduralTruth truth;
@@ -62,7 +62,7 @@ public:
     }
 
 private:
-    /// Lengths in sixteenths of a voxel; the centre is relative to the cell's lower corner.
+    /// A ball, in sixteenths of a voxel; its centre is relative to the lower corner of its cell.
     struct Ball {
         glm::dvec3 centre;
         double radius;
@@ -104,7 +104,7 @@ double mix(double a, double b, double t)
     return a + (b - a) * t;
 }
 
-/// Value noise: random values on a lattice, blended smoothly between lattice points. 0 <= value < 1.
+/// Value noise in [0, 1): random values on a lattice, interpolated smoothly between lattice points.
 class Octave {
 public:
     Octave(uint32_t seed, double period) : seed_(seed), period_(period) {}
@@ -120,7 +120,7 @@ public:
         return {int64_t(index), scaled - index};
     }
 
-    /// Returns the value at lattice column `x`, blended along y and z.
+    /// Returns the value at lattice column `x`, interpolated along y and z.
     double column(int64_t x, const Place& y, const Place& z) const
     {
         const double wy = smooth(y.fraction);
@@ -163,7 +163,7 @@ private:
     }
 
     uint32_t seed_;
-    double period_;  ///< voxels; a power of two, so that fractions are exact
+    double period_;  ///< in voxels: a power of two, so that fractions of it are exact
 };
 
 class Fog final : public ProceduralKind {

@@ -66,7 +66,7 @@ private:
     double slope_;
 };
 
-/// The test signal of Marschner and Lobb 1994, An evaluation of reconstruction filters for volume rendering.
+/// The test signal of Marschner and Lobb, "An evaluation of reconstruction filters for volume rendering", 1994.
 class MarschnerLobb final : public ProceduralKind {
 public:
     explicit MarschnerLobb(const Size3& size) : scale_(2.0 / glm::dvec3(size)) {}
@@ -83,7 +83,7 @@ public:
         return FULL / (2.0 * (1.0 + ALPHA)) * slope * scale_;
     }
 
-    /// Computes the part that depends only on x and y once, since it is the same in every slice.
+    /// Precomputes the part that depends only on x and y, which is equal in every slice.
     class PlaneRows final : public Rows {
     public:
         PlaneRows(const MarschnerLobb& kind, const VoxelBox& box)
@@ -127,7 +127,7 @@ private:
     glm::dvec3 scale_;  ///< voxel -> [-1,1]
 };
 
-/// A checkerboard of voxels; between voxel centres the field is trilinear.
+/// A checkerboard of voxels; between voxel centres, values are interpolated trilinearly.
 class Checker final : public ProceduralKind {
 public:
     double value(const glm::dvec3& voxel) const override
@@ -147,7 +147,7 @@ private:
     struct Wave {
         double value, slope;
     };
-    /// A triangle wave: 1 at the centres of even voxels, -1 at the centres of odd voxels.
+    /// A triangle wave: 1 at the centres of even voxels, -1 at the centres of odd ones.
     static Wave wave(double coordinate)
     {
         const double centre = std::floor(coordinate - 0.5);

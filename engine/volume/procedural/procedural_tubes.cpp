@@ -1,6 +1,6 @@
-// Tubes like the vascular bundles of a stem: eight curved tubes from bottom to top, fanning out, and five thinner
-// branches. Their centre lines are cubic Bezier curves split into short straight segments; a tube is everything within
-// its radius of its centre line. Noise is one random number per voxel, constant within each voxel.
+// Tubes like the vascular bundles of a stem: eight curved tubes that fan out from bottom to top, and five thinner
+// branches. Centre lines are cubic Bezier curves split into short straight segments; a tube is everything within its
+// radius of its centre line. The noise is one random number per voxel, constant within the voxel.
 
 #include <algorithm>
 #include <array>
@@ -20,7 +20,7 @@ constexpr double NOISE_DEVIATION = 0.03 * (TUBE - BACKGROUND);
 constexpr uint32_t BUNDLES = 8;
 constexpr uint32_t BRANCHES = 5;
 
-/// Returns nearly normal noise: the sum of the hash's four bytes has mean 510 and variance 4 (256^2 - 1) / 12.
+/// Returns approximately normal noise: the sum of a hash's four bytes has mean 510 and variance 4 (256^2 - 1) / 12.
 double noise_of(uint32_t hash)
 {
     constexpr double DEVIATION = 147.8016689;
@@ -28,7 +28,7 @@ double noise_of(uint32_t hash)
     return (double(sum) - 510.0) * (NOISE_DEVIATION / DEVIATION);
 }
 
-/// Converts the distance to the nearest tube's surface (negative inside) to intensity; the edge is two voxels wide.
+/// Converts the signed distance from the nearest tube's surface to an intensity. The edge is two voxels wide.
 double profile(double distance)
 {
     const double t = std::clamp(0.5 * (1.0 - distance), 0.0, 1.0);
@@ -45,7 +45,7 @@ struct Segment {
     glm::dvec3 begin, along;
     double inverse_length_squared;
     double radius;
-    glm::dvec3 lower, upper;  ///< the tube adds nothing outside this box
+    glm::dvec3 lower, upper;  ///< outside this box, the segment has no influence
 
     Segment(const glm::dvec3& from, const glm::dvec3& to, double tube_radius)
         : begin(from), along(to - from), inverse_length_squared(1.0 / glm::dot(along, along)), radius(tube_radius)
@@ -73,7 +73,7 @@ struct Segment {
     }
 };
 
-/// Control points in [0,1]^3, the unit cube of the volume; the ends lie slightly outside it.
+/// Control points in the volume's unit cube [0,1]^3. The end points lie slightly outside of it.
 using Bezier = std::array<glm::dvec3, 4>;
 
 glm::dvec3 point_on(const Bezier& c, double t)
@@ -98,7 +98,7 @@ public:
         return profile(nearest) + noise_of(hash);
     }
 
-    /// Returns the gradient without the noise, which is constant within a voxel and jumps at the voxel's faces.
+    /// Excludes the noise from the gradient: noise is constant within a voxel and jumps at the voxel's faces.
     glm::dvec3 gradient(const glm::dvec3& voxel) const override
     {
         double nearest = 1.0;
@@ -117,7 +117,7 @@ public:
         return length > 0.0 ? offset * (profile_slope(nearest) / length) : glm::dvec3(0.0);
     }
 
-    /// Evaluates tube segments only where they come near a row; the rest of the row is noise alone.
+    /// Evaluates only those segments that come near the row. Elsewhere in the row there is only noise.
     class BinnedRows final : public Rows {
     public:
         BinnedRows(const Tubes& kind, const VoxelBox& box)
@@ -166,7 +166,7 @@ public:
     };
     std::unique_ptr<Rows> rows(const VoxelBox& box) const override { return std::make_unique<BinnedRows>(*this, box); }
 
-    /// Like BinnedRows, but draws tubes at least MIN_THICKNESS voxels of the coarse level thick.
+    /// Like BinnedRows, but tubes are at least MIN_THICKNESS voxels of the coarser level thick.
     class CoarseRows final : public Rows {
     public:
         CoarseRows(const Tubes& kind, double side, const Size3& size, int64_t first_x)
@@ -213,7 +213,7 @@ public:
     std::optional<ProceduralTruth> truth() const override { return truth_of_tubes(strands_, size_); }
 
 private:
-    /// Returns the n-th random number of tube `tube`, from -1 to 1.
+    /// Returns the n-th random number of a tube, from -1 to 1.
     double random(uint32_t tube, uint32_t n) const
     {
         return 2.0 * unit_of(hash_of(seed_ ^ 0x5eed70beu, n, tube, 0)) - 1.0;
@@ -245,7 +245,7 @@ void Tubes::make_segments()
     const auto inside = [](double x, double y, double z) {
         return glm::dvec3(std::clamp(x, 0.06, 0.94), std::clamp(y, 0.06, 0.94), z);
     };
-    // Radii are 2 to 6 voxels if the side is 128 voxels, and grow with the fourth root of the side.
+    // Radii are 2 to 6 voxels for a shortest side of 128 voxels, and grow with the fourth root of that side.
     const double scale = std::sqrt(std::sqrt(double(std::min({size_.x, size_.y, size_.z})) / 128.0));
     std::array<Bezier, BUNDLES> bundles;
     std::array<double, BUNDLES> radii{};

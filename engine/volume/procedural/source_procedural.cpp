@@ -63,13 +63,13 @@ std::unique_ptr<ProceduralKind> make_kind(const ProceduralSpec& spec)
     fail("procedural volume is \"", spec.kind, "\"; expected one of ", known);
 }
 
-/// Signed bytes hold -128 ... 127, so every intensity is lowered by 128.
+/// For int8, with a range of -128 ... 127, intensities are lowered by 128.
 double shift_of(VoxelType type)
 {
     return type == VoxelType::int8 ? -128.0 : 0.0;
 }
 
-/// Stores `values` as voxels of `type`; all kinds return values in 0 ... 250.
+/// Stores `values`, which are 0 ... 250 for every kind, as voxels of `type`.
 void store(VoxelType type, std::span<double> values, std::byte* voxels)
 {
     const double shift = shift_of(type);
@@ -93,7 +93,7 @@ public:
 
     int levels() const override { return levels_; }
 
-    /// A huge volume takes too long to measure at level 0, so a coarse level is measured instead.
+    /// Measures a coarser level of huge volumes, since measuring level 0 would take too long.
     std::optional<VolumeStatistics> statistics() const override
     {
         if (voxel_count(info()) <= int64_t{1} << 33) return std::nullopt;
@@ -148,7 +148,7 @@ private:
     int levels_;
 };
 
-/// Evaluates one value at a time, for kinds that are cheap to evaluate.
+/// Evaluates each value separately, for kinds whose values are cheap.
 class PointRows final : public ProceduralKind::Rows {
 public:
     PointRows(const ProceduralKind& kind, int64_t first_x) : kind_(kind), first_x_(first_x) {}

@@ -1,5 +1,5 @@
 #pragma once
-// Deterministic volumes with a known value and gradient, for tests, benchmarks and goldens. No file is involved and no
+// Deterministic volumes with a known value and gradient, for tests, benchmarks and goldens. They need no file, and no
 // voxel is stored: `read` evaluates the function. Equal parameters give equal bits on every machine: the noise is an
 // integer hash instead of library random numbers, and where possible, transcendental functions do not affect the
 // rounding of a voxel.
@@ -13,8 +13,8 @@ namespace shvr {
 /// A scalar field in voxel coordinates (the centre of voxel i is at i + 0.5), in intensity units.
 struct ScalarField {
     std::function<double(glm::dvec3 voxel)> value;
-    /// Derivative d value / d voxel; at a kink, the slope of one side. Empty if the field has no useful one (speckles).
-    /// For `tubes` it excludes the noise, which is constant within a voxel and jumps at the voxel's faces.
+    /// The derivative d value / d voxel; where it jumps, that of one side. Empty if the field has no useful one
+    /// (speckles). For `tubes` it excludes the noise, which is constant within a voxel and jumps at the voxel's faces.
     std::function<glm::dvec3(glm::dvec3 voxel)> gradient;
 };
 
@@ -25,9 +25,9 @@ struct ProceduralSpec {
     VoxelType type = VoxelType::uint8;
     glm::dvec3 spacing{1.0};
     std::string unit = "voxel";
-    /// Number of levels. Every level samples the same function, at the centres of its voxels. 0: one level or, for
-    /// volumes of more than 2^33 voxels, enough levels to end with a single brick. Tubes thinner than 1.5 voxels of a
-    /// level are drawn 1.5 voxels thick on that level; otherwise they would fall between the centres of its voxels.
+    /// Number of levels. Every level samples the same function, at the centres of its own voxels. 0: one level or, for
+    /// volumes of more than 2^33 voxels, as many as are needed for a coarsest level of one brick. On each level, tubes
+    /// are drawn at least 1.5 voxels thick; otherwise they would fall between the centres of voxels.
     int levels = 0;
     bool operator==(const ProceduralSpec&) const = default;
 };
@@ -54,7 +54,7 @@ std::vector<std::string> procedural_kinds();
 ScalarField procedural_field(const ProceduralSpec& spec);
 std::unique_ptr<VolumeSource> open_procedural(const ProceduralSpec& spec);
 
-/// The known contents of a volume, used to draw, trace or export it.
+/// The known content of a volume, to draw, trace or export it.
 struct ProceduralTruth {
     /// Returns the colour group at a position in voxel coordinates; 0: background.
     std::function<uint8_t(const glm::dvec3& voxel)> group;
@@ -64,9 +64,9 @@ struct ProceduralTruth {
         uint8_t group = 1;
     };
     std::vector<Node> nodes;                   ///< along the centre lines
-    std::vector<std::array<size_t, 2>> links;  ///< internodes; each has the group of its second node
+    std::vector<std::array<size_t, 2>> links;  ///< internodes; a link has the group of its second node
 };
-/// Returns the known contents; null for kinds whose parts are not known. Fails as `open_procedural` does.
+/// Returns the known content; null for kinds whose content is not known. Fails like `open_procedural`.
 std::optional<ProceduralTruth> procedural_truth(const ProceduralSpec& spec);
 
 }  // namespace shvr

@@ -14,17 +14,17 @@ TubeDistance distance_from(const Tube& tube, const glm::dvec3& voxel)
     const double from_first = d.x * d.x + d.y * d.y + d.z * d.z;
     const auto [r0, r1] = tube.radii;
     const double length = std::sqrt(squared);
-    if (length <= std::abs(r0 - r1)) {  // one ball contains the other, so that ball is the whole tube
+    if (length <= std::abs(r0 - r1)) {  // one end's ball contains the other, and is the whole tube
         if (r0 >= r1) return {std::sqrt(from_first) - r0, 0.0};
         const glm::dvec3 e = voxel - tube.ends[1];
         return {std::sqrt(e.x * e.x + e.y * e.y + e.z * e.z) - r1, 1.0};
     }
-    // Coordinates in the half-plane through the axis and the position: y along the axis, x away from it.
+    // Position in the half-plane that is bounded by the axis: y along the axis, x the distance from it.
     const double y = (d.x * axis.x + d.y * axis.y + d.z * axis.z) / length;
     const double x = std::sqrt(std::max(0.0, from_first - y * y));
     const double slope = (r0 - r1) / length;  // sine of the angle between axis and surface
     const double flat = std::sqrt(1.0 - slope * slope);
-    const double along = flat * y - slope * x;  // distance along the surface from its start on the first ball
+    const double along = flat * y - slope * x;  // position along the surface, from where it leaves the first ball
     if (along < 0.0) return {std::sqrt(from_first) - r0, 0.0};
     if (along > flat * length) {
         const double past = y - length;
@@ -44,7 +44,7 @@ TubeScene::TubeScene(std::vector<Tube> tubes, const Size3& size, double reach)
         for (int64_t z = lower.z; z <= upper.z; ++z)
             for (int64_t y = lower.y; y <= upper.y; ++y)
                 for (int64_t x = lower.x; x <= upper.x; ++x) {
-                    // A tube along a diagonal has a large bounding box, but is far from most of its cells.
+                    // Tests each cell's distance, since a diagonal tube is far from most cells of its bounding box.
                     const glm::dvec3 middle = (glm::dvec3(x, y, z) + 0.5) * cell_;
                     const double diagonal = 0.5 * std::sqrt(cell_.x * cell_.x + cell_.y * cell_.y + cell_.z * cell_.z);
                     const bool is_border = glm::any(glm::equal(Size3(x, y, z), Size3(0))) ||

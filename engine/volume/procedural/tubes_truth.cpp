@@ -17,7 +17,7 @@ double distance_of(const glm::dvec3& a, const glm::dvec3& b)
     return std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
 }
 
-/// The point of a strand's axis nearest to a position; it lies on the piece between points `before` and `before` + 1.
+/// The point of a strand's axis nearest to a position. It lies between the points `before` and `before` + 1.
 struct Fork {
     size_t before = 0;
     glm::dvec3 place{};
@@ -38,7 +38,7 @@ Fork nearest_on(const TubeStrand& strand, const glm::dvec3& position)
     return nearest;
 }
 
-/// Returns the part of a piece, as fractions of it, where balls of `radius` lie in the volume; empty: x > y.
+/// Returns the fractions of a piece between which balls of `radius` lie inside the volume; x > y if none does.
 glm::dvec2 part_inside(const glm::dvec3& from, const glm::dvec3& to, double radius, const Size3& size)
 {
     glm::dvec2 part(0.0, 1.0);
@@ -91,7 +91,7 @@ private:
             fork = forks_[index]->before + 1;
             points.insert(points.begin() + ptrdiff_t(*fork), forks_[index]->place);
         }
-        std::optional<size_t> previous;  // node at points[k]; null if the line does not continue from points[k]
+        std::optional<size_t> previous;  // node at points[k]; null if no part of the line ends there
         for (size_t k = 0; k + 1 < points.size(); ++k) {
             const glm::dvec2 part = part_inside(points[k], points[k + 1], strand.radius, size_);
             if (!(part.x < part.y)) {
