@@ -21,7 +21,7 @@ FOLDER = ROOT / "build/bench"
 SHVR = Path(os.environ.get("SHVR", ROOT / "build/release/shvr"))
 PEER = ROOT / "tools/peers/label.py"
 
-# Name, side, threshold. The noise is uniform over all 256 values.
+# Name, side, and threshold of each volume. Noise is uniform over all 256 values, so the threshold sets the share.
 VOLUMES = [("noise, 30 %", 256, 179), ("noise, 50 %", 256, 128), ("tubes", 256, 128), ("noise, 30 %", 512, 179),
            ("tubes", 512, 128)]
 

@@ -34,7 +34,7 @@ PEER_FRAMES = 5
 REFERENCE_PIXELS = 2000
 CAMERA = "bench"
 
-# Intensity and opacity per voxel. The background is noise around 40, so the translucent ramp begins within it.
+# Pairs of intensity and opacity per voxel. The background is noise around 40, at which the translucent ramp begins.
 OPAQUE = [(120, 0.0), (160, 1.0), (255, 1.0)]
 TRANSLUCENT = [(38.7, 0.0), (120, 0.005), (255, 0.02)]
 OCCLUSION = {"strength": 0.8, "radius": 16, "rays": 32}
@@ -94,7 +94,7 @@ def make_volume(side):
 
 def session_of(header, side, points, shaded, occlusion):
     centre = [0.5 * side] * 3
-    offset = [1.35, -2.7, 0.95]  # from there a field of view of 30 degrees covers every corner
+    offset = [1.35, -2.7, 0.95]  # at this distance, a field of view of 30 degrees covers every corner
     return {"shvr_session": 1,
             "volume": {"path": os.path.relpath(header, FOLDER)},
             "cameras": {CAMERA: {"projection": "perspective", "eye": [c + side * o for c, o in zip(centre, offset)],
@@ -104,7 +104,7 @@ def session_of(header, side, points, shaded, occlusion):
             "light": {"shaded": shaded, "ambient": 0.3, "diffuse": 0.7, "specular": 0, "direction": [0, 0, 1],
                       "gradient_fade": 0, **({"occlusion": occlusion} if occlusion else {})},
             "render": {"size": [512, 512], "step_voxels": 0.5, "background": "#000000"},
-            # VTK's volume ends at the centres of its outermost voxels.
+            # VTK's volume ends at the centres of its outermost voxels, so SHVR's is cut there.
             "cut": {"lower": [0.5] * 3, "upper": [side - 0.5] * 3}}
 
 

@@ -13,9 +13,9 @@ from pathlib import Path, PurePosixPath
 
 # ---- The rules, as data ---------------------------------------------------------------------------------------------
 
-# Room: the rooms whose files it may include, in addition to its own. Exactly the dependencies in use: adding one is a
-# decision, made here. A file belongs to the longest of these paths that is a prefix of its own; a file without one is
-# an error. From the ground up:
+# Room: the rooms whose files it may include, in addition to its own. Lists exactly the dependencies in use: adding one
+# is a decision, made here. A file belongs to the room with the longest path that is a prefix of the file's; a file
+# without a room is an error. From the ground up:
 MAY_INCLUDE = {
     "shaders": "",
     "engine/base": "",
@@ -124,23 +124,23 @@ MAY_INCLUDE = {
     "engine/workbench/touch "
     "tools/golden tools/bench tools/report",
 }
-# Rooms without a device: none of them may include a room that depends on one, directly or indirectly.
+# Rooms that must work without a device: none may include a room that depends on one, directly or indirectly.
 WITHOUT_DEVICE = ["engine/session", "engine/projects", "engine/bricks", "engine/annotation/work", "engine/tasks", "haptics",
                   "haptics/devices"]
 WITH_DEVICE = {"engine/gpu", "engine/passes", "engine/device"}
 MAX_SOURCES = 30  # per folder
-# Folders of the product that include each other all the same. None do; a new one needs a reason here.
+# Folders of the product that may include each other in a cycle. None do; adding one needs a reason here.
 FOLDER_CYCLES = []
 PRODUCT = {"engine", "haptics", "shaders", "ui"}
 
-# third party: pattern of its headers, pattern of the files that may include them
+# library: pattern of its headers, pattern of the files that may include them
 THIRD_PARTIES = {
     "Vulkan": (r"vulkan/", r"engine/gpu/|ui/swapchain(_frame)?\.cpp|tests/layers/"),
     "hidapi": (r"hidapi", r"haptics/hid/hid_device\.cpp|tests/vm/"),
     "GLFW": (r"GLFW/", r"ui/"),
     "Dear ImGui": (r"(backends/|imgui/)?imgui", r"ui/|tests/unit/ui/screen_text_test"),
-    # 25,000 lines for everyone who includes a header; json_fwd.hpp is small. engine/base/json.h reads JSON; the other
-    # files write it.
+    # json.hpp adds 25,000 lines to each file that includes it; json_fwd.hpp is small. engine/base/json.h reads JSON;
+    # the other files write JSON.
     "nlohmann/json": (
         r"nlohmann/(?!json_fwd\.hpp)",
         r"engine/(base/json|graph/|session/|tasks/|projects/|formats/zarr/|annotation/files/).*\.cpp|tools/|tests/",
@@ -157,8 +157,8 @@ THIRD_PARTIES = {
     "doctest": (r"doctest", r"tests/"),
 }
 
-# Folders whose results have equal bits on every machine. The last bits of these functions depend on the processor; those
-# of square roots and of rounding do not. engine/volume/procedural/turns.h has a sine and a cosine.
+# Folders whose results have equal bits on every machine. The last bits of these functions depend on the processor,
+# unlike those of square roots and rounding. engine/volume/procedural/turns.h has a sine and a cosine to use instead.
 EQUAL_BITS = ["engine/volume/phantoms", "engine/volume/procedural"]
 UNEQUAL_BITS = re.compile(
     r"(?<![\w.>])(?:std::|glm::|::)?((?:a?(?:sin|cos|tan)h?|atan2|sincos|exp[2m]?1?|log(?:2|10|1p)?|pow|hypot|cbrt|fma|erfc?|"
@@ -202,7 +202,7 @@ def read_includes(root, files):
         includes[file] = []
         for match in INCLUDE.finditer(text):
             line, spelled = text.count("\n", 0, match.start(2)) + 1, match[2]
-            # Like compilers: first relative to the including file, then from the root.
+            # Resolves includes as compilers do: first relative to the including file, then from the root.
             beside = PurePosixPath(os.path.normpath(file.parent / spelled))
             target = next((path for path in (beside, PurePosixPath(spelled)) if path in known), None)
             includes[file].append((line, spelled, target))
@@ -376,7 +376,7 @@ ALLOWED = {
     "build/made.cpp": '#include "nowhere.h"',
 }
 
-# file with its content -> text that the one finding must contain
+# Self-test: a file with its content -> text that the only finding must contain
 FORBIDDEN = [
     ("engine/base/bad.h", '#include "engine/volume/volume.h"', "engine/base may not include engine/volume/volume.h"),
     ("engine/volume/bad.cpp", "#include <vulkan/vulkan.h>", "Vulkan (vulkan/vulkan.h) may be included only in"),
@@ -399,7 +399,7 @@ FORBIDDEN = [
     ("engine/formats/tiff/tiff.h", "", "engine/formats/tiff may include engine/formats, but does not"),
 ]
 
-# a change of the table -> text that one of the findings must contain
+# Self-test: a change of the table -> text that one of the findings must contain
 FORBIDDEN_TABLES = [
     ({"engine/base": "engine/volume"}, "rooms in a circle: engine/base -> engine/volume -> engine/base"),
     ({"engine/volume": "engine/base shaders engine/gpu"},
@@ -407,7 +407,7 @@ FORBIDDEN_TABLES = [
 ]
 
 
-# sources of folders that reach each other, and the folders
+# Self-test: sources of folders that include each other in a cycle, and these folders
 FOLDERS_IN_A_CIRCLE = (
     {
         "ui/keys.h": '#include "ui/panels/panel.h"',
@@ -436,7 +436,7 @@ def self_test():
     if findings := findings_of({}, ROOMS):
         failures.append(f"the allowed tree: {findings}")
     for path, content, expected in FORBIDDEN:
-        # Some of these close a circle of folders as well, which is a rule of its own.
+        # Some of these files also close a cycle of folders, which is a separate rule.
         findings = [each for each in findings_of({path: content}, ROOMS) if not each.startswith("folders include")]
         if len(findings) != 1 or expected not in findings[0]:
             failures.append(f"{path} {content!r}: expected {expected}, found {findings}")

@@ -41,7 +41,7 @@ PATTERNS = {
 COMPILED = {name: re.compile(pattern) for name, (pattern, _) in PATTERNS.items()}
 CODE = re.compile(r"\.(?:cpp|h|comp|glsl)$")
 COMMENT = re.compile(r"(?<![:\"'])//+<?\s?(.*)$")
-SAID = ("ui/", "engine/", "haptics/", "tools/")  # literals of these rooms are texts on the screen, messages or --help
+SAID = ("ui/", "engine/", "haptics/", "tools/")  # rooms whose string literals are texts on screen, messages or --help
 
 
 def prose_of(path, line):

@@ -1,14 +1,14 @@
-# Writes OUTPUT, a C++ file with the SPIR-V files BINARIES in it, so that `shvr` is one file that runs from anywhere,
-# and with the macros that a kernel may be compiled with. Run by the build:
-# cmake -DOUTPUT=... -DBINARIES=a.spv;b.spv "-DVARIANTS=raycast PAGED MASKED;surfaces LISTED" -P embed_kernels.cmake
+# Writes OUTPUT, a C++ file that embeds the SPIR-V files BINARIES, so that `shvr` is one file that runs anywhere. Also
+# lists the macros that each kernel may be compiled with. Run by the build:
+#   cmake -DOUTPUT=... -DBINARIES=a.spv;b.spv "-DVARIANTS=raycast PAGED MASKED;surfaces LISTED" -P embed_kernels.cmake
 #
-# The assembler reads the files: as lists of numbers they would be 50 MB of C++, half a minute of writing and compiling.
+# The assembler includes the files: as lists of numbers they would be 50 MB of C++, half a minute to write and compile.
 set(arrays "")
 set(entries "")
 foreach(binary IN LISTS BINARIES)
     cmake_path(GET binary STEM name)
-    # SPIR-V is a stream of 32-bit words in the byte order of the machine, as glslang writes it on every machine we
-    # build on.
+    # SPIR-V is a stream of 32-bit words. glslang writes them in the byte order of the machine, which is the same on all
+    # machines that build SHVR.
     file(SIZE ${binary} bytes)
     math(EXPR words "${bytes} / 4")
     string(APPEND arrays "EMBED(${name}, \"${binary}\")\n")

@@ -1,9 +1,9 @@
-# Sources of one folder that are compiled as one file: most of a file's time goes into headers that its neighbours
-# read as well. CMake's own UNITY_BUILD names sources by absolute paths, so that a compiler cache would miss in every
-# other clone; these files name them from the repository's root. Without SHVR_UNITY (preset tidy) each source stands
-# alone, so that none relies on another's includes.
+# Compiles several sources of one folder as one file, since most of a source's compile time goes into headers that its
+# neighbours include as well. CMake's own UNITY_BUILD names sources by absolute paths, with which a compiler cache
+# misses in every other clone; these files name sources from the repository's root. Without SHVR_UNITY (preset tidy),
+# each source is compiled alone, so that none relies on the includes of another.
 
-# Sets `batches_of` to a list of batch names, and `batch_NAME` to the sources of each: `size` sources of a folder.
+# Sets `batches_of` to a list of batch names, and `batch_NAME` to a batch's sources: up to `size` from one folder.
 macro(shvr_batch size)
     set(batches_of)
     foreach(source ${ARGN})
@@ -18,7 +18,7 @@ macro(shvr_batch size)
     list(REMOVE_DUPLICATES batches_of)
 endmacro()
 
-# Sets `together` to the files to compile in place of `sources`: batches of twelve, in folder build/together/`target`.
+# Sets `together` to the files to compile instead of the sources: batches of twelve, in build/together/`target`.
 function(shvr_compile_together target)
     set(together ${ARGN})
     if(SHVR_UNITY)
@@ -38,8 +38,8 @@ function(shvr_compile_together target)
     set(together ${together} PARENT_SCOPE)
 endfunction()
 
-# The same for tests, except that their helpers may share names: batches of eight files named *_test.cpp. A batch first
-# includes all headers of its files, then each file in a namespace of its own. Other sources are compiled alone.
+# Like shvr_compile_together, for tests whose helpers may have equal names: batches of eight files *_test.cpp. A batch
+# first includes all headers of its files, then each file in a namespace of its own. Other sources are compiled alone.
 function(shvr_tests_together target)
     set(together ${ARGN})
     if(SHVR_UNITY)

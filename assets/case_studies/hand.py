@@ -106,7 +106,7 @@ def stroke(places, group, options):
 
 def paint(nodes, found, options):
     for chain in found:
-        # A vein may end at a node of another section.
+        # A vein's chain may end at a node of another section; the vein then belongs to that section's group.
         group = next(each for each in (options.group, options.section, nodes[chain[-1]][1]) if each is not None)
         places, runs = [nodes[node][0] for node in chain], []
         for a, b in zip(places, places[1:]):

@@ -49,7 +49,7 @@ void put(Image8& image, const Image8& part, int x, int y)
 Window worst_window(const ImageF& picture, const ImageF& truth)
 {
     Window worst{0, 0, std::max(truth.width / 4, 1), std::max(truth.height / 4, 1)};
-    // Prefix sums over all pixels above and to the left.
+    // Summed-area table: each entry is the sum over all pixels above and to the left.
     const int across = truth.width + 1;
     std::vector<double> sums(size_t(across) * size_t(truth.height + 1));
     const auto sum = [&](int x, int y) -> double& { return sums[size_t(y) * size_t(across) + size_t(x)]; };
@@ -61,7 +61,7 @@ Window worst_window(const ImageF& picture, const ImageF& truth)
         for (int x = 0; x + worst.width <= truth.width; ++x) {
             const double here =
                 sum(x + worst.width, y + worst.height) - sum(x, y + worst.height) - sum(x + worst.width, y) + sum(x, y);
-            // Sums of equal errors differ by rounding, so the first window wins unless another is clearly larger.
+            // Equal sums of errors differ by rounding, so a window must be clearly worse to replace an earlier one.
             if (here > most + 1e-12) most = here, worst.x = x, worst.y = y;
         }
     return worst;
@@ -116,7 +116,7 @@ Image8 sheet_of(const Results& results, const std::vector<Pictures>& pictures)
                 write_word(sheet, x, y + LINE,
                            sentence("RMSE here ", std::setprecision(2),
                                     rmse_in(*picture, pictures[row].reference, insets.window)));
-            // A window larger than a cell is cropped at its end.
+            // A window that does not fit into a cell is cropped at its right and lower end.
             Window shown = insets.window;
             shown.width = std::min(shown.width, CELL / times);
             shown.height = std::min(shown.height, CELL * 3 / 4 / times);

@@ -24,9 +24,9 @@ namespace shvr::bench {
 
 namespace {
 
-// Far below the measured errors; 1e-12 would take three times as long.
+// Far below the errors to be measured. 1e-12 would take three times as long.
 constexpr double REFERENCE_TOLERANCE = 1e-8;
-/// Incremented whenever the reference renderer changes its output, so that kept pictures are drawn again.
+/// Increment whenever the output of the reference renderer changes, so that stored references are drawn again.
 constexpr int REFERENCE_VERSION = 1;
 constexpr size_t ROWS_AT_A_TIME = 4;
 constexpr const char* YARDSTICK = "yardstick";  // among the runs' names
@@ -45,7 +45,7 @@ std::filesystem::path kept_reference(const golden::Studio& studio, const Scene& 
     return options.kept / sentence("reference-", golden::hash_of(std::as_bytes(std::span(all))), ".light");
 }
 
-/// Reads a kept picture: its width and height, then floats. Null if there is no picture of this size.
+/// Reads a stored picture: its width and height, then floats. Null if the file holds no picture of this size.
 std::optional<ImageF> read_kept(const std::filesystem::path& path, const glm::uvec2& size)
 {
     const size_t values = size_t(size.x) * size.y * 4;
@@ -90,16 +90,16 @@ ImageF reference_of(const golden::Studio& studio, const Scene& scene, const Meas
     return image;
 }
 
-/// A run that can be drawn at any time, since its device is ready.
+/// A run whose device is ready, so that its picture can be drawn at any time.
 struct Prepared {
     const Run* run;
     golden::Studio* studio;
     Session session;
-    size_t passes = 0;  ///< number of passes in a picture that needs no preparation
+    size_t passes = 0;  ///< number of passes in a picture without preparation
     int redraws = 0;
 };
 
-/// One studio for each combination of the settings that decide how the device holds a volume; runs share them.
+/// Shares devices between runs: one studio for each combination of settings that affect how a device holds a volume.
 class Studios {
 public:
     Studios(const Scene& scene, const MeasureOptions& options) : scene_(scene), options_(options) {}
@@ -135,8 +135,8 @@ Picture draw(Prepared& prepared, bool counted)
     return prepared.studio->picture_of(prepared.session, prepared.studio->camera(), counted);
 }
 
-/// Returns the milliseconds of a picture that needs no preparation. If the change from the previous run's settings made
-/// updates necessary (leap grid, sample bits, table), times the next picture instead.
+/// Returns the milliseconds of a picture without preparation. If settings that differ from the previous run's required
+/// updates (leap grid, sample bits, table), draws and times the picture again.
 double steady_ms(Prepared& prepared)
 {
     const Picture picture = draw(prepared, false);
@@ -176,14 +176,14 @@ std::string words_of_volume(const VolumeInfo& info)
     return sentence(info.size.x, " x ", info.size.y, " x ", info.size.z, " ", name_of(info.type));
 }
 
-/// One of the runs that are timed in interleaved rounds.
+/// A run that is timed in rounds, which alternate between all runs.
 struct Timed {
     std::string name;
     std::function<double()> draw;  ///< milliseconds
     std::vector<double> milliseconds = {};
 };
 
-/// Starts another program if it can draw the same picture; otherwise adds a note with the reason.
+/// Starts the comparison program if it can draw the same picture; otherwise adds a note with the reason.
 std::unique_ptr<Peer> started_peer(const Scene& scene, const golden::Studio& studio, const MeasureOptions& options,
                                    std::vector<PeerRun>& runs, std::vector<std::string>& notes)
 {
@@ -235,7 +235,7 @@ Measured first_look_of_peer(Peer& peer, const PeerRun& run, const ImageF& refere
 
 void time_in_turns(std::vector<Timed>& timed, int rounds, const std::function<void(double)>& tell)
 {
-    // Alternates the order, so that a machine that becomes slower or faster affects all runs equally.
+    // The order alternates, so that a machine that becomes slower or faster affects all runs equally.
     for (int round = 0; round < rounds; ++round) {
         tell(double(round) / rounds);
         for (Timed& each : timed) each.milliseconds.push_back(each.draw());
@@ -243,8 +243,8 @@ void time_in_turns(std::vector<Timed>& timed, int rounds, const std::function<vo
     }
 }
 
-/// Returns the 95 % interval of the median by a deterministic bootstrap: resamples `sorted` many times, with
-/// replacement and at its own size, and takes the median of each resample. `sorted` has at least one value.
+/// Returns the 95 % confidence interval of the median by a deterministic bootstrap: draws many samples of the same size
+/// from `sorted`, with replacement, and takes the median of each. `sorted` has at least one value.
 std::pair<double, double> interval_of_median(const std::vector<double>& sorted)
 {
     constexpr size_t DRAWS = 1000;

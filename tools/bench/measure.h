@@ -1,6 +1,6 @@
 #pragma once
-// Draws a scene with the settings of each of `runs`, measures each picture against the reference renderer, and times
-// the runs in interleaved rounds. One thread, apart from the threads of the reference renderer.
+// Draws a scene once with the settings of each of `runs`, compares each picture with the reference renderer's, and
+// times the runs in rounds. One thread, apart from the threads of the reference renderer.
 
 #include <functional>
 
@@ -19,12 +19,12 @@ struct MeasureOptions {
     int rounds = 7;
     int threads = 2;  ///< threads of the reference
     PeerOptions peer = {};
-    std::filesystem::path kept;  ///< an existing folder that keeps references between runs
+    std::filesystem::path kept;  ///< an existing folder that stores references for later calls
     std::function<void(const std::string& what, double share)> tell = {};  ///< may throw, which ends the work
 };
 
-/// A scene and its pictures for readers: the reference, one for each quality, and another program's picture, drawn with
-/// the step of `interactive`.
+/// A scene and its pictures for the report: the reference, one for each quality, and the comparison program's picture,
+/// drawn with the step of `interactive`.
 struct Pictures {
     ImageF reference;
     std::vector<std::pair<std::string, ImageF>> of_qualities, of_peers = {};
@@ -35,13 +35,13 @@ struct MeasuredScene {
 };
 
 MeasuredScene measure_scene(const Scene& scene, const MeasureOptions& options);
-/// Describes the machine and program that measure when SHVR draws on `device`.
+/// Describes the machine, the program and the device that the results are measured with.
 Results who_measures(const std::string& device);
 
 Error error_of(const ImageF& picture, const ImageF& reference);
-/// Resizes bilinearly between pixel centres, with the border repeated.
+/// Resizes bilinearly between pixel centres; outside, the picture's border is repeated.
 ImageF resized(const ImageF& image, int width, int height);
-/// Needs at least one measurement. The 95th percentile is not interpolated: it is a measured value.
+/// Needs at least one value. The 95th percentile is one of the values, not interpolated.
 Time time_of(std::vector<double> milliseconds);
 
 }  // namespace shvr::bench

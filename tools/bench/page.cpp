@@ -88,7 +88,7 @@ std::string cell_of(const Measured* run)
                : "<td>none</td><td>-</td><td>-</td>";
 }
 
-/// Returns a table of the time that SHVR takes, relative to another program's, to match that program's error.
+/// Returns a table of the time that SHVR needs for the comparison program's error, relative to that program's time.
 std::string peer_table_of(const Results& results, const std::string& scene)
 {
     std::string rows;
@@ -144,7 +144,7 @@ std::string pictures_of(const Pictures& pictures)
     return markup;
 }
 
-/// Returns whether a run gets a label: the qualities, and another program's run at the settings of interactive.
+/// Returns whether a run gets a label: the qualities do, and the comparison program's run at the step of `interactive`.
 bool is_labelled(const Measured& run)
 {
     return run.family == "quality" || (is_peer(run.family) && run.name.ends_with("step 0.5"));
@@ -176,7 +176,7 @@ report::Plot plot_of(const SceneResult& scene, Metric metric)
 
 report::Plot plot_of_qualities(const Results& results)
 {
-    // The x axis counts samples read: a number equal on every machine, so the plot can be committed and compared.
+    // The x axis counts samples read, which are equal on every machine, so that the plot can be committed and compared.
     report::Plot plot{.title = "draft, interactive, good, reference: from left to right",
                       .x_label = "texels read for a picture",
                       .y_label = "RMSE in linear light",

@@ -1,5 +1,5 @@
 #pragma once
-// The bench's results for readers: one self-contained page, and the plots as files.
+// The bench's results for readers: one self-contained HTML page, and the plots as files.
 
 #include "tools/bench/measure.h"
 #include "tools/bench/sweeps.h"
@@ -8,9 +8,9 @@
 namespace shvr::bench {
 
 enum class Metric { rmse, flip };
-/// Plots a scene's runs: milliseconds to the right, error upwards, one series per family, with labelled qualities.
+/// Plots a scene's runs, error over milliseconds: one series per family, with labels on the qualities.
 report::Plot plot_of(const SceneResult& scene, Metric metric);
-/// Plots the qualities of all scenes over the number of samples that they read: one series per scene.
+/// Plots the errors of the qualities over the number of samples read: one series per scene.
 report::Plot plot_of_qualities(const Results& results);
 std::string page_of(const Results& results, const std::vector<Pictures>& pictures, const std::vector<Sweep>& sweeps);
 /// Writes bench.json, bench.csv, front.csv, equal_error.csv, equal_time.csv, equal_peer.csv, pareto*.svg and .png,

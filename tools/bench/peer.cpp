@@ -24,7 +24,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* FAMILY = "VTK";
 constexpr const char* CAMERA = "bench";
-constexpr int64_t PADDING = 2;  // voxels of padding: VTK's volume ends at the centres of its outermost voxels, and so
+constexpr int64_t PADDING = 2;  // padding by 2 voxels: VTK's volume ends at the centres of its outermost voxels, and so
                                 // do its gradients
 constexpr int PATIENCE_S = 300;
 constexpr int64_t MAX_COMPLAINT_BYTES = 1 << 20;
@@ -209,7 +209,7 @@ std::string Peer::next_line()
         if (end != std::string::npos) {
             const std::string line = received_.substr(0, end);
             received_.erase(0, end + 1);
-            // Ignores other lines that are printed in between, by xvfb-run for example.
+            // Skips other output, such as that of xvfb-run.
             if (line.starts_with("{")) return line;
             continue;
         }
@@ -233,7 +233,7 @@ double Peer::ask(const PeerRun& run, const std::filesystem::path& output)
     for (size_t sent = 0; sent < line.size();) {
         const ssize_t count = ::send(socket_, line.data() + sent, line.size() - sent, MSG_NOSIGNAL);
         if (count < 0 && errno == EINTR) continue;
-        if (count <= 0) break;  // the peer has terminated: reading its answer reports this
+        if (count <= 0) break;  // the peer has ended; reading its answer reports the reason
         sent += size_t(count);
     }
     return Json::parse(next_line()).at("ms").get<double>();

@@ -1,6 +1,6 @@
 #pragma once
-// A comparison program: VTK's volume ray casters, which tools/peers/vtk_raycast.py draws on request. It is optional: if
-// it cannot be started, a sentence in the results says so.
+// The comparison program: VTK's volume ray casters, which tools/peers/vtk_raycast.py runs on request. It is optional:
+// if it cannot be started, the results contain a sentence that states why.
 //
 // One thread.
 
@@ -15,7 +15,7 @@
 namespace shvr::bench {
 
 struct PeerOptions {
-    std::filesystem::path program;  ///< vtk_raycast.py, or a program with the same interface; empty: none
+    std::filesystem::path program;  ///< vtk_raycast.py or a program with the same interface; empty: no comparison
     std::vector<std::string> mappers = {"fixed"};
     int threads = 2;
 };
@@ -28,16 +28,16 @@ struct PeerRun {
 };
 /// The runs of all mappers.
 std::vector<PeerRun> peer_runs(const PeerOptions& options, bool quick);
-/// Returns whether a family of runs is the peer's.
+/// Returns whether runs of this family were drawn by the comparison program.
 bool is_peer(const std::string& family);
 
-/// Returns why VTK cannot draw the same picture, as the end of a sentence; null if it can.
+/// Returns the reason why VTK cannot draw the same picture, to end a sentence with; null if VTK can.
 std::optional<std::string> why_not_by_peer(const Session& session, const VolumeSource& source, const Camera& camera,
                                            const std::string& mapper);
 
 class Peer {
 public:
-    /// Starts the peer on a scene. Fails with a sentence if the peer does not start, or if it terminates.
+    /// Starts the peer on a scene. Fails with a sentence if the peer cannot be started or ends early.
     Peer(const PeerOptions& options, const Session& session, const VolumeSource& source, const Camera& camera);
     ~Peer();
     Peer(const Peer&) = delete;

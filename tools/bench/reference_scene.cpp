@@ -13,8 +13,8 @@ namespace shvr::bench {
 namespace {
 
 constexpr double MAX_CODE = 65535.0;
-// Number of directions of the reference's ambient occlusion: enough to be far closer to the exact value than pictures
-// are (tests/gpu/occlusion/occlusion_test.cpp).
+// Number of directions of the reference's ambient occlusion: enough for an error far below that of the pictures
+// compared (tests/gpu/occlusion/occlusion_test.cpp).
 constexpr uint32_t OCCLUSION_DIRECTIONS = 128;
 constexpr int OCCLUSION_STEPS = 32;
 
@@ -46,7 +46,7 @@ std::vector<uint8_t> labels_of(const Mask& mask, const Size3& size)
     return labels;
 }
 
-/// Returns the direction to a light. Lights move with the camera; 0, 0, 0 means over the viewer's shoulder.
+/// Returns the direction to a light, which moves with the camera; 0, 0, 0 means a light over the viewer's shoulder.
 glm::dvec3 to_light(const glm::dvec3& stated, const Camera& camera)
 {
     const glm::dvec3 along = stated == glm::dvec3(0.0) ? glm::dvec3(0.3, 0.5, 1.0) : stated;
@@ -55,7 +55,7 @@ glm::dvec3 to_light(const glm::dvec3& stated, const Camera& camera)
     return glm::dmat3(right, glm::cross(back, right), back) * along;
 }
 
-/// The opacity, per reference length, at a position; 0 outside the drawn region.
+/// Opacity per reference length as a function of position; 0 outside the drawn region.
 class OpacityField {
 public:
     explicit OpacityField(const reference::Scene& scene) : scene_(scene), transfer_(scene.points) {}
@@ -72,7 +72,7 @@ public:
         return transfer_.at(reference::density_at(scene_, voxel)).a;
     }
 
-    /// Returns whether a sample next to a voxel's centre may show something.
+    /// Returns whether any of the positions sampled within a voxel of `centre` is visible.
     bool shows_near(const glm::dvec3& centre) const
     {
         for (int corner = 0; corner < 27; ++corner) {
@@ -88,7 +88,7 @@ private:
     reference::Transfer transfer_;
 };
 
-/// Returns the surface at a voxel's centre, from central differences over two voxels (occlusion.h).
+/// Returns the normal and strength of the surface at a voxel, by central differences over two voxels (occlusion.h).
 reference::OcclusionSide side_at(const reference::Scene& scene, const glm::dvec3& centre, const glm::dvec3& per_unit)
 {
     glm::dvec3 slope(0.0);
@@ -145,8 +145,8 @@ void refuse_what_is_unknown(const Session& session, const VolumeInfo& info)
              ", which the reference renderer keeps in 8 bytes each");
 }
 
-/// Returns where a ray first meets a ball, in units of the ray's direction; null if it meets none, or only before
-/// t_min.
+/// Returns the ray parameter of the first intersection with a ball; null if the ray misses the ball, or meets it only
+/// before t_min.
 std::optional<double> first_hit(const Ball& ball, const reference::Ray& ray, const glm::dvec3& spacing)
 {
     const glm::dvec3 along = ray.direction * spacing, from = ray.origin * spacing - ball.center;
@@ -159,7 +159,7 @@ std::optional<double> first_hit(const Ball& ball, const reference::Ray& ray, con
     return std::max(near, ray.t_min);
 }
 
-/// Returns Blinn-Phong light for a surface whose normal is certain.
+/// Returns the Blinn-Phong lighting of a surface with an exact normal, to which no fading applies.
 glm::dvec3 lit(const Ball& ball, const reference::Shading& light, const glm::dvec3& normal, const glm::dvec3& to_eye)
 {
     const glm::dvec3 towards = glm::normalize(light.to_light), sum = towards + to_eye;

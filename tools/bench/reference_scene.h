@@ -22,9 +22,9 @@ struct ReferenceScene {
     std::vector<Ball> balls;
 };
 
-/// Takes 8 bytes per voxel. `mask`: null if nothing is painted. Fails if the session shows something that the reference
-/// does not support (rods, a trace, slices, distance blending) or has more voxels than MAX_REFERENCE_VOXELS. Takes
-/// seconds for exact ambient occlusion, which is computed for each voxel near which something is visible.
+/// Uses 8 bytes per voxel. `mask`: null if nothing is painted. Fails if the session shows something that the reference
+/// does not support (rods, a trace, slices, distance blending) or has more voxels than MAX_REFERENCE_VOXELS. Exact
+/// ambient occlusion takes seconds: it is computed for each voxel near which something is visible.
 ReferenceScene reference_scene_of(const Session& session, const VolumeSource& source,
                                   const VolumeStatistics& statistics, const Camera& camera, const Mask* mask);
 inline constexpr int64_t MAX_REFERENCE_VOXELS = int64_t{1} << 29;
@@ -32,7 +32,7 @@ inline constexpr int64_t MAX_REFERENCE_VOXELS = int64_t{1} << 29;
 /// Rays through the centres of pixels.
 std::vector<reference::Ray> rays_through(std::span<const glm::uvec2> pixels, const RayPlanes& planes);
 
-/// Draws rays. Returns linear light, premultiplied, over the session's background, in the order of `rays`.
+/// Traces rays. Returns linear light, premultiplied, composited over the session's background, in the order of `rays`.
 std::vector<glm::dvec4> draw(const ReferenceScene& scene, std::span<const reference::Ray> rays,
                              const reference::Mode& mode, const glm::dvec4& background, int threads);
 

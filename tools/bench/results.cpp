@@ -22,7 +22,7 @@ constexpr int64_t MAX_BENCH_BYTES = int64_t{64} << 20;
 constexpr int SCHEMA = 1;
 constexpr double ERROR_MARGIN = 1.01;
 constexpr double MIN_ERROR = 1e-7;  // of a float
-/// The error of alpha in files of older versions, which lack it: a comparison with NaN finds no difference.
+/// Stands for the error of alpha, which files of older versions lack: comparisons with NaN find no difference.
 constexpr double NOT_MEASURED = std::numeric_limits<double>::quiet_NaN();
 
 Json json_of(const Measured& run)
@@ -85,19 +85,19 @@ Measured measured_of(const Json& json)
     return run;
 }
 
-/// The input of a comparison of two files.
+/// The parts of two files that a comparison looks at.
 struct Looked {
     size_t a_rounds = 0, b_rounds = 0;
     bool at_work = false, at_times = false;
 };
 
-/// Noise of the median, in milliseconds; null if there were too few rounds.
+/// Noise of the median in milliseconds; null if there were too few rounds to estimate it.
 std::optional<double> noise_of(const Time& time, size_t rounds)
 {
     return report::noise_of(time.min_ms, time.p95_ms, rounds);
 }
 
-/// Returns `time` divided by `machine`, the ratio of the yardstick's times: as if measured on the other machine.
+/// Divides `time` by `machine`, the ratio of both yardstick times, to make it comparable with the other machine's.
 Time scaled(const Time& time, double machine)
 {
     return {time.min_ms / machine, time.median_ms / machine, time.p95_ms / machine, time.low_ms / machine,
@@ -143,7 +143,7 @@ void compare_runs(const SceneResult& of_a, const Measured& a, const SceneResult&
     for (const auto& [name, value] : b.work) {
         const auto before = std::ranges::find(a.work, name, &std::pair<std::string, uint64_t>::first);
         if (before == a.work.end() || !looked.at_work) continue;
-        // Skipped bricks and rays that end early save work, so a larger count of them is better.
+        // Skipped bricks, leaps and rays that end early save work, so a larger count is an improvement.
         const bool saves = name == "bricks_skipped" || name == "rays_terminated_early" || name == "leaps";
         add(name, double(before->second), double(value), !saves && value > before->second);
     }
@@ -157,7 +157,7 @@ const Measured* same_run(const SceneResult& scene, const Measured& run)
     return found != scene.runs.end() && found->settings == run.settings ? &*found : nullptr;
 }
 
-/// Lists the content that only `a` has: "only A has tubes; tissue: step 4".
+/// Describes the content that only `a` has: "only A has tubes; tissue: step 4". Null if there is none.
 std::optional<std::string> only_in(const Results& a, const Results& b, const char* name)
 {
     std::string found;

@@ -13,8 +13,8 @@
 
 namespace shvr::bench {
 
-/// Error of a picture against the reference. RMSE and maximum: in linear light, over red, green and blue of all pixels.
-/// PSNR, SSIM and FLIP: in 8 bits, as displayed (engine/base/image_metrics.h).
+/// Error of a picture relative to the reference. RMSE and maximum: in linear light, over red, green and blue of all
+/// pixels. PSNR, SSIM and FLIP: of 8-bit colours, as displayed (engine/base/image_metrics.h).
 struct Error {
     double rmse = 0.0, max_abs = 0.0;
     double alpha_rmse = 0.0, alpha_max_abs = 0.0;  ///< the same errors for alpha; NaN if not measured
@@ -35,30 +35,30 @@ struct Measured {
     double scale = 1.0;
     Error error;
     Time time;
-    double first_ms = 0.0;                               ///< time of the first picture, which includes preparation
+    double first_ms = 0.0;                               ///< time of the first picture, which includes its preparation
     std::vector<std::pair<std::string, uint64_t>> work;  ///< exact counters
     uint64_t device_bytes = 0;
-    int redraws = 0;  ///< number of timed pictures that were drawn twice because the first time created shared data
-    bool on_front = false;  ///< no other run of the scene is better in both error and median time
+    int redraws = 0;        ///< number of timed pictures drawn again, because the first drawing created shared data
+    bool on_front = false;  ///< on the Pareto front: no other run of the scene is better in both error and median time
 };
 
 struct SceneResult {
     std::string name, what;
     std::string volume;              ///< "64 x 64 x 64 uint8"
-    double reference_seconds = 0.0;  ///< 0: the picture was kept from an earlier run
+    double reference_seconds = 0.0;  ///< time of drawing the reference; 0: it was stored
     std::vector<Measured> runs;
-    std::vector<std::string> notes = {};  ///< sentences that state why another program is missing from the runs
-    /// Time of a fixed amount of processor work (yardstick.h), in the same rounds; null if a GPU drew.
+    std::vector<std::string> notes = {};  ///< sentences that state why the comparison program has no run here
+    /// Time of a fixed amount of processor work (yardstick.h), in the same rounds; null if the device is a GPU.
     std::optional<Time> yardstick = {};
 };
 
 struct Results {
     std::string device, driver, processor;
-    std::string instructions;  ///< instruction sets of the processor that change rounding
+    std::string instructions;  ///< instruction sets of the processor, on which rounding depends
     std::string version;       ///< version of SHVR
-    std::string commit;        ///< commit of the program's source tree; empty if it has none
-    /// Environment variables that drivers and SHVR read: names that begin with LP_, GALLIVM_, MESA_, VK_, SHVR_ and the
-    /// like.
+    std::string commit;        ///< commit of the source tree that the program was built in; empty if unknown
+    /// Environment variables that affect drivers and SHVR: names that begin with LP_, GALLIVM_, MESA_, VK_, SHVR_ and
+    /// the like.
     std::vector<std::pair<std::string, std::string>> environment = {};
     int cores = 0;
     double load = 0.0;  ///< system load of the machine at the start
@@ -68,8 +68,8 @@ struct Results {
     std::vector<std::string> left_out = {};  ///< sentences: scenes whose data is missing
 };
 
-/// Returns a sentence if the machine was so busy that medians of few rounds reflect its other load, that is, if the
-/// yardstick's 95th percentile is over one and a half times its minimum.
+/// Returns a warning if the machine was so busy that medians of few rounds reflect its other load: if the yardstick's
+/// 95th percentile is more than one and a half times its minimum.
 std::optional<std::string> why_times_tell_little(const SceneResult& scene);
 
 /// Sets `on_front` of each run.
@@ -80,24 +80,24 @@ nlohmann::ordered_json json_of(const Results& results);
 Results read_results(const std::filesystem::path& file);
 /// One line per run.
 std::string csv_of(const Results& results);
-/// Lists the values that are the same in every run on one machine: the error and the work of each of SHVR's runs.
+/// Lists the values that repeat exactly on the same machine: the error and the work of each of SHVR's runs.
 std::string front_csv(const Results& results);
-/// Lists, for each scene, family and limit of the RMSE, the fastest run whose RMSE is at most the limit.
+/// Lists, for each scene, family and limit of the RMSE, the fastest run whose RMSE is at most that limit.
 std::string equal_error_csv(const Results& results);
-/// Lists, for each scene, family and quality preset, the most accurate run that is no slower than the preset.
+/// Lists, for each scene, family and quality preset, the run with the smallest error that is no slower than the preset.
 std::string equal_time_csv(const Results& results);
 
-/// Another program's run, and two of SHVR's runs: the fastest one whose error is no larger, and the one with the same
-/// step.
+/// A run of the comparison program, and two runs of SHVR: the fastest run whose error is no larger, and the run with
+/// the same step.
 struct AtPeersError {
     std::string scene;
     const Measured* peer = nullptr;
-    const Measured* fastest = nullptr;    ///< null: no run of SHVR is as accurate as the peer's
-    const Measured* same_step = nullptr;  ///< run with the peer's step, whatever its error; null: not measured
+    const Measured* fastest = nullptr;    ///< null: every run of SHVR has a larger error
+    const Measured* same_step = nullptr;  ///< SHVR's run with the same step, whatever its error; null: not measured
 };
 /// The results point into `results`.
 std::vector<AtPeersError> at_peers_errors(const Results& results);
-/// Returns the rows of at_peers_errors, with SHVR's time relative to the other program's time.
+/// Returns at_peers_errors as a table, with SHVR's time relative to the comparison program's time.
 std::string equal_peer_csv(const Results& results);
 
 /// A difference between `a` and `b`. Errors are listed if they differ by more than 1 % (a picture's error is the same
@@ -108,13 +108,13 @@ struct Change {
     std::string scene, run, what;  ///< "rmse", "samples", "median_ms"
     double a = 0.0, b = 0.0, noise = 0.0;
     bool is_regression = false;
-    double machine = 1.0;  ///< for comparing times: the ratio of the yardstick's time in `b` to that in `a`
+    double machine = 1.0;  ///< for times only: the yardstick's time in `b` divided by that in `a`
 };
 struct Comparison {
     std::vector<Change> changes;      ///< all differences; regressions first
-    std::vector<std::string> beside;  ///< sentences about runs that only one file has, and about meaningless times
+    std::vector<std::string> beside;  ///< sentences about runs that only one file has, and times not comparable
 };
-/// Fails if the two have no run in common. `with_times`: also compares times.
+/// Fails if the two results have no run in common. `with_times`: compares times, too.
 Comparison compare(const Results& a, const Results& b, bool with_times);
 
 }  // namespace shvr::bench

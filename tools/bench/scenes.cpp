@@ -23,7 +23,7 @@ constexpr const char* FAMILIES[] = {"quality", "step",      "pre-integrated", "o
                                     "coarse",  "skipping",  "occlusion rays", "budget",        "detail",   "mixed",
                                     "VTK",     "VTK OpenGL"};
 constexpr int64_t MAX_SESSION_BYTES = 1 << 20;
-/// Shading without highlights, and without fading where there is no surface, as other programs define it.
+/// Shading as other programs define it: without highlights, and without fading where there is no surface.
 Json matt()
 {
     return {{"light", {{"specular", 0}, {"gradient_fade", 0}}}};
@@ -41,7 +41,7 @@ Json points_of(std::initializer_list<Point> points, const char* color = "#f0d8b8
     return {{"points", list}};
 }
 
-/// Shared by several scenes: tubes with noise in the air around them (a mean of 40 and a standard deviation of 5.4).
+/// Shared by several scenes: tubes, surrounded by air with noise (mean 40, standard deviation 5.4).
 Json session_of(int64_t side, const glm::uvec2& pixels, const Json& function)
 {
     return {{"shvr_session", 1},
@@ -85,8 +85,8 @@ std::string scene_names(const std::vector<Scene>& own)
     return names.substr(0, names.size() - 2);
 }
 
-/// Returns the example as tools/fetch_example left it, without later painting. `is_matt`: also without highlights and
-/// fading. Fails if the example is missing.
+/// Returns a scene of the example that tools/fetch_example downloaded, without paint. `is_matt`: also without
+/// highlights and fading. Fails if the example is missing.
 Scene example_scene(const Example& example, bool is_matt, const SceneChoice& choice)
 {
     const std::filesystem::path folder = choice.examples / example.name / "shvr";
@@ -176,7 +176,7 @@ std::vector<Scene> own_scenes(int64_t side, const glm::uvec2& pixels)
                          {"radius", (4 + i) * unit},
                          {"color", i % 2 ? "#ff6020" : "#40c0ff"}});
     scenes.push_back(scene_of("surfaces", "opaque balls in translucent tissue", made(tissue, {{"surfaces", balls}})));
-    // Three of the scenes above, with shading as other programs define it.
+    // Three of the scenes above, shaded as other programs do.
     const Json noisy = points_of({{50, 0.0}, {58, 1.0}, {255, 1.0}});
     scenes.push_back(
         scene_of("tubes-matt", "the clean opaque tubes, matt: as VTK can draw them, too", made(opaque, matt())));
@@ -254,7 +254,7 @@ std::vector<Run> runs_of(const Scene& scene, bool quick)
         runs.push_back({sentence("sampling ", sampling), "sampling", {sentence("render.sampling=", sampling)}});
     for (const double scale : quick ? std::vector{0.5} : std::vector{0.7, 0.5, 0.35})
         runs.push_back({sentence("resolution ", digits_of(scale)), "resolution", {}, scale});
-    // Coarser settings than in practice, to see the cost of another program's error level.
+    // Coarser settings than in practice, to find the cost of errors as large as the comparison program's.
     const auto coarse = [&](double scale, double step, bool preintegration) {
         runs.push_back(
             {sentence("coarse ", digits_of(scale), preintegration ? ", pre-integrated " : ", step ", digits_of(step)),
@@ -286,7 +286,7 @@ std::vector<Run> runs_of(const Scene& scene, bool quick)
 
 std::vector<Run> mixed_runs(int count)
 {
-    // Makes a Latin hypercube: divides each knob's range into `count` equal parts, and uses each part once.
+    // Draws a Latin hypercube: divides the range of each setting into `count` equal parts, and uses each part once.
     std::mt19937 random(1);
     const auto places = [&] {
         std::vector<int> order(size_t(std::max(count, 0)));

@@ -1,7 +1,7 @@
 #pragma once
-// The scenes of the bench: typical uses, which code generates from seeds without any file, or the user's own sessions.
-// Also the settings with which scenes are drawn: one knob varied at a time, and the qualities that window and command
-// line offer. Plain data.
+// The scenes of the bench: typical uses, generated from seeds without any file, or the user's own sessions. Also the
+// runs, that is, the settings with which scenes are drawn: one setting varied at a time, and the qualities that window
+// and command line offer. Plain data.
 
 #include <cstdint>
 #include <filesystem>
@@ -20,20 +20,20 @@ struct Scene {
     uint64_t budget_device = 0;  ///< bytes; 0: unlimited
 };
 
-/// Our own scenes: volumes of `side` voxels a side, drawn as pictures of `pixels`.
+/// Returns the built-in scenes: volumes with `side` voxels along each axis, drawn as pictures of `pixels`.
 std::vector<Scene> own_scenes(int64_t side, const glm::uvec2& pixels);
 
 struct SceneChoice {
-    std::vector<std::string> names;  ///< names of scenes; empty: all of our own, and the examples that are available
+    std::vector<std::string> names;  ///< empty: all built-in scenes, and the examples that are available
     int64_t side = 64;               ///< voxels
     glm::uvec2 pixels{120, 90};
-    std::filesystem::path examples;  ///< folder into which tools/fetch_example put the scans
+    std::filesystem::path examples;  ///< folder where tools/fetch_example stored the scans
 };
 struct ChosenScenes {
     std::vector<Scene> scenes;
-    std::vector<std::string> left_out;  ///< a sentence for each scene whose data is missing
+    std::vector<std::string> left_out;  ///< a sentence for each scene that is omitted for lack of its data
 };
-/// Returns the scenes with these names; any name that is not one of ours is taken as the path of a session, project or
+/// Returns the scenes with these names. A name that is not a built-in scene's is the path of a session, project or
 /// volume. Fails if there is no such file, or if the data of a named example is missing.
 ChosenScenes chosen_scenes(const SceneChoice& choice);
 
@@ -42,16 +42,16 @@ struct Run {
     std::string name;                   ///< "step 0.5"
     std::string family;                 ///< "step"
     std::vector<std::string> settings;  ///< "render.step_voxels=0.5"
-    double scale = 1.0;          ///< factor of the picture's sides; smaller pictures are enlarged again, bilinearly
-    uint64_t budget_device = 0;  ///< bytes; 0: the scene's
+    double scale = 1.0;                 ///< factor on the sides of the picture, which is enlarged again bilinearly
+    uint64_t budget_device = 0;         ///< bytes; 0: the scene's
 };
 
-/// Returns the runs of a scene, without those whose knob has no effect on it.
+/// Returns the runs of a scene, without those that vary a setting without effect on the scene.
 std::vector<Run> runs_of(const Scene& scene, bool quick);
-/// Settings that vary step, resolution, opacity limit, pre-integration and sampling at once, spread evenly over the
-/// ranges of all five (a Latin hypercube); equal counts give equal settings.
+/// Returns runs that vary step, resolution, opacity limit, pre-integration and sampling at once, spread evenly over the
+/// ranges of all five settings (a Latin hypercube). Equal counts give equal runs.
 std::vector<Run> mixed_runs(int count);
-/// Returns the names of all families, the qualities first.
+/// Returns the names of all families of runs, the qualities first.
 std::span<const char* const> families();
 
 }  // namespace shvr::bench

@@ -15,9 +15,9 @@ namespace shvr::bench {
 namespace {
 
 constexpr int TIMES = 5;
-constexpr double REFERENCE_REACH = 8.0;  // radius in sigmas: the remainder is 1e-15 of the weights
+constexpr double REFERENCE_REACH = 8.0;  // radius in sigmas, beyond which 1e-15 of the weights lie
 
-/// Noise from 0 to 1, a deterministic function of the position.
+/// Hash noise in 0 ... 1, a deterministic function of the position.
 double noise_at(const Size3& at)
 {
     auto x = uint32_t(at.x + 1009 * (at.y + 1013 * at.z)) * 0x9e3779b9u;
@@ -80,7 +80,7 @@ private:
     }
 };
 
-/// Returns the seconds per call: the median of several calls.
+/// Returns the duration of a call in seconds: the median of several calls.
 double median_seconds(const std::function<void()>& call)
 {
     std::vector<double> seconds;
@@ -93,7 +93,7 @@ double median_seconds(const std::function<void()>& call)
     return seconds[TIMES / 2];
 }
 
-/// Blurs along one axis after the other, in double; values at borders are repeated.
+/// Blurs along one axis after the other, in double precision; outside the volume, its border values are repeated.
 std::vector<double> blurred(std::vector<double> values, int64_t side, double sigma)
 {
     const auto reach = int64_t(std::ceil(REFERENCE_REACH * sigma));

@@ -1,6 +1,6 @@
 #pragma once
-// Speed against error of other features: blurring before an import, and the labelling of components. One thread calls
-// these.
+// Measures speed against error of features other than drawing: blurring before an import, and labelling of components.
+// Call from one thread.
 
 #include <filesystem>
 #include <functional>
@@ -13,16 +13,16 @@ namespace shvr::bench {
 
 struct SweepRow {
     std::string series, setting;  ///< "uint8", "sigma 2"
-    double share = 0.0;           ///< percentage of open voxels; only for labelling
+    double share = 0.0;           ///< percentage of voxels that belong to components; only for labelling
     double ns_per_voxel = 0.0;    ///< median
-    double error = 0.0;           ///< blur: RMS, relative to the range of values; labelling: voxels with another label
+    double error = 0.0;           ///< blur: RMS, relative to the range of values; labelling: voxels with a wrong label
 };
 struct Sweep {
     std::string name, what;
     std::string error;  ///< meaning of `SweepRow::error`
     std::vector<SweepRow> rows;
     report::Plot plot;
-    std::string svg = {};    ///< replaces `plot` if it was drawn elsewhere
+    std::string svg = {};    ///< a finished plot that is used in place of `plot`; empty: none
     std::string table = {};  ///< likewise: CSV that replaces `rows`
 };
 
@@ -33,9 +33,9 @@ struct SweepOptions {
     std::function<void()> poll = {};  ///< may throw, which ends the work
 };
 
-/// Measures blur time by sigma and voxel type; the error is the difference from a direct sum, in double, up to 8 sigma.
+/// Measures blur time by sigma and voxel type. Errors are relative to a direct sum up to 8 sigma, in double.
 Sweep sweep_blur(const SweepOptions& options);
-/// Measures labelling time by fraction of open voxels and by connectivity; compares with breadth-first labelling.
+/// Measures labelling time by share of open voxels and connectivity; checks the labels by breadth-first search.
 Sweep sweep_labelling(const SweepOptions& options);
 
 /// The sweep's own CSV.

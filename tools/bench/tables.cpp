@@ -1,4 +1,4 @@
-// The tables of the bench's results, as CSV.
+// Writes the tables of the bench's results as CSV.
 
 #include <algorithm>
 #include <iomanip>
@@ -88,7 +88,7 @@ std::string front_csv(const Results& results)
     std::string text = "scene,run,family,settings,samples,reads,rmse\n";
     for (const SceneResult& scene : results.scenes)
         for (const Measured& run : scene.runs) {
-            if (is_peer(run.family)) continue;  // the peer may be missing on other machines; its work is unknown
+            if (is_peer(run.family)) continue;  // other machines may lack the peer, and its work is not counted
             std::string settings;
             for (const std::string& setting : run.settings) settings += (settings.empty() ? "" : " ") + setting;
             text += sentence(cell(scene.name), ",", cell(run.name), ",", cell(run.family), ",", cell(settings), ",",

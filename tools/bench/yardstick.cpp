@@ -9,10 +9,10 @@ namespace shvr::bench {
 
 namespace {
 
-constexpr int NUMBERS = 1 << 15;  // 128 KiB of data: fits the nearest caches, as most data that kernels read does
+constexpr int NUMBERS = 1 << 15;  // 128 KiB of data: fit into the nearest caches, like most data that kernels read
 constexpr int ROUNDS_OF_WORK = 150;
 
-/// Multiplies and adds numbers, as a kernel does; the numbers stay between 0 and 1.
+/// Multiplies and adds numbers like a kernel. The numbers stay between 0 and 1.
 float worked(int seed)
 {
     std::vector<float> numbers(NUMBERS);

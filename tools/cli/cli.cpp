@@ -20,7 +20,7 @@ const char* built_commit();  // in the build folder, by tools/package/write_comm
 
 namespace {
 
-/// Maximum number of MiB: enough for any machine, and its product with 2^20 fits into 64 bits.
+/// Maximum number of MiB: enough for any machine, and small enough that the number of bytes fits into 64 bits.
 constexpr int64_t MAX_MIB = int64_t{1} << 24;
 
 CLI::Validator whole_mib()
@@ -101,12 +101,12 @@ void add_input_options(CLI::App& command, Common& common)
         .add_option_function<std::string>(
             "--raw",
             [&common](const std::string& value) {
-                parse_raw_layout(value);  // reports wrong usage here instead of a bad file
+                parse_raw_layout(value);  // reports a wrong --raw as wrong usage, before it is reported as a bad file
                 common.settings.push_back("volume.raw=" + value);
             },
             "How a file of bare voxels is laid out")
         ->type_name("WxHxD:TYPE[:big|little][:OFFSET]");
-    // The value is always text, even if it looks like a number.
+    // Quotes the value as JSON text, even if it looks like a number.
     const auto text = [&](const char* option, const char* key, const char* form, const char* help) {
         command
             .add_option_function<std::string>(
@@ -133,7 +133,7 @@ void add_input_options(CLI::App& command, Common& common)
                                                digits_of(spacing.z), "]"));
         },
         [&common](const std::string& unit) { common.settings.push_back("volume.unit=" + Json(unit).dump()); });
-    // Bare voxels state no unit; in a session their unit is "voxel" by default.
+    // Bare voxels state no unit. A session would take "voxel" as the unit by default, which contradicts a spacing.
     command.parse_complete_callback([&common] {
         const auto is_given = [&](std::string_view key) {
             return std::ranges::any_of(common.settings,
@@ -265,7 +265,7 @@ void take_settings(Session& session, const Work& left, const std::vector<std::st
     set_kept_settings(session, without_overridden(left.kept_settings(), overridden));
 }
 
-/// A volume that may be partly unreadable; owns the sources that `source` refers to.
+/// A volume of which parts may be unreadable; owns the sources that `source` refers to.
 struct Readable {
     Readable(std::shared_ptr<const VolumeSource> whole, std::shared_ptr<Gaps> what_is_not)
         : base(std::move(whole)), gaps(std::move(what_is_not)), source(*base, *gaps)
@@ -331,7 +331,7 @@ Opened open(const std::string& path, const Common& common, LongWork& work, Work:
     opened.project = is_picture ? session.pictured : session_file_of(path);
     Session kept = opened.session;
     choose_thresholds(kept, volume, session.statistics);
-    // A picture has its own settings, which later changes of the project do not affect.
+    // A picture has settings of its own, which later changes of the project do not affect.
     const WorkFiles files =
         is_picture ? work_files(opened.session, volume)
                    : with_kept_settings(work_files(opened.session, volume, common.settings), kept, common.settings);

@@ -1,6 +1,6 @@
 #pragma once
-// Shared by the sub-commands of `shvr`: common options, opening a session with its renderer, and printing results. Each
-// command is one file with one function that adds the command to the program; main.cpp lists these functions.
+// Shared by the sub-commands of `shvr`: common options, opening a session with a renderer, and printing results. Each
+// command is one file with a function that adds the command to the program; main.cpp lists these functions.
 
 #include <functional>
 #include <memory>
@@ -22,7 +22,7 @@ namespace shvr::cli {
 
 using Json = nlohmann::ordered_json;
 
-/// "0.1.0 (f3c3aac1d2e4)", or "0.1.0" where the sources came without their history.
+/// "0.1.0 (f3c3aac1d2e4)", or "0.1.0" if the program was built from sources without their git history.
 std::string version_in_words();
 
 struct Common {
@@ -33,42 +33,42 @@ struct Common {
     int threads = 0;
     bool quiet = false;
     bool json = false;
-    std::optional<bool> allows_incomplete;  ///< null: the command has no such option
+    std::optional<bool> allows_incomplete;  ///< null: the command has no --allow-incomplete
     Belief belief = Belief::ask;
     bool outside = false;  ///< the session may write files outside its folder
 };
 
 /// --set, --raw, --spacing, --unit
 void add_input_options(CLI::App& command, Common& common);
-/// Adds only --spacing and --unit, for commands that read volumes without a session. Impossible values are refused.
+/// Adds only --spacing and --unit, for commands that read volumes without a session. Refuses impossible values.
 void add_spacing_options(CLI::App& command, const std::function<void(const glm::dvec3&)>& take_spacing,
                          const std::function<void(const std::string&)>& take_unit);
 /// Adds the input options, --device, --budget-device, --budget-host and --threads.
 void add_device_options(CLI::App& command, Common& common);
 /// --budget-host
 void add_host_budget_option(CLI::App& command, Common& common, const std::string& help);
-/// --ome-zarr: the version to write; null if it is not given.
+/// Adds --ome-zarr, the version of the format to write; null if the option is not given.
 void add_version_option(CLI::App& command, std::optional<OmeZarrVersion>& version, const std::string& otherwise);
 /// --believe, for commands that open annotation.
 void add_belief_option(CLI::App& command, Common& common);
-/// --outside, for commands that write the files that a session names.
+/// Adds --outside, for commands that write the files that a session names, wherever they are.
 void add_outside_option(CLI::App& command, Common& common);
 /// Fails if the session would write outside its folder and --outside is not given. `path`: the opened file.
 void check_outside(const std::string& path, const Session& session, const Common& common);
-/// --allow-incomplete, for commands whose result needs all voxels.
+/// Adds --allow-incomplete, for commands whose result needs all voxels.
 void add_incomplete_option(CLI::App& command, bool& allows_incomplete, const std::string& does);
 void add_incomplete_option(CLI::App& command, Common& common, const std::string& does);
 /// --json, --quiet: every command has them.
 void add_output_options(CLI::App& command, Common& common);
 
-/// Prints a line on standard error, unless --quiet.
+/// Prints a line on standard error, unless --quiet is given.
 void say(const Common& common, const std::string& line);
 void warn(const std::vector<std::string>& warnings, const Common& common);
-/// Prints notices about opened work; losses are printed even with --quiet.
+/// Prints notices about annotation that was opened; data losses are printed even with --quiet.
 void warn(const std::vector<Notice>& notices, const Common& common);
 /// Printed even with --quiet.
 void warn_of_losses(const std::vector<std::string>& losses);
-/// Warns if another process is writing the journal: records not yet written by that process are not visible.
+/// Warns if another process is writing the journal, since records that it has not written yet are not visible here.
 void warn_of_holder(const std::filesystem::path& journal, const Common& common);
 /// Prints one object on standard output.
 void print(const Json& result);
@@ -78,7 +78,7 @@ glm::dvec3 parse_spacing(const std::string& text);
 glm::uvec2 parse_size(const std::string& text);
 
 /// An open session, with its volume on the device and its mask and trace, if any, loaded. It is read-only unless
-/// `opening` has the journal's hold or the session has no journal.
+/// `opening` holds the journal's lock or the session has no journal.
 struct Opened {
     Session session;
     std::shared_ptr<const VolumeSource> source;
@@ -86,32 +86,32 @@ struct Opened {
     std::vector<std::string> warnings;
     std::unique_ptr<Renderer> renderer;
     std::unique_ptr<Annotator> annotator;
-    std::filesystem::path project;     ///< path of its session's file; empty for a bare volume
-    std::shared_ptr<const Gaps> gaps;  ///< unreadable parts found so far, while bricks are read
+    std::filesystem::path project;     ///< file of the opened session; empty for a bare volume
+    std::shared_ptr<const Gaps> gaps;  ///< unreadable parts found so far; bricks are read while drawing
     std::string gaps_told{};           ///< already printed by `warn_of_gaps`
 
     bool is_whole() const { return gaps->empty(); }
     int64_t voxels_not_read() const { return gaps->voxels(); }
 };
-/// Refuses volumes that are too large for the budgets before reading voxels, and unreadable ones unless
-/// `common.allows_incomplete`.
-/// `check` refuses a session before its voxels are read.
+/// Before reading voxels, refuses volumes that exceed the budgets.
+/// Refuses unreadable volumes unless `common.allows_incomplete` is
+/// set. `check` may refuse a session before its voxels are read.
 using CheckSession = std::function<void(const Session& session, const VolumeInfo& volume)>;
 Opened open(const std::string& path, const Common& common, LongWork& work, Work::Opening opening = {.only_look = true},
             const CheckSession& check = {});
-/// Fails if there is no camera of that name; a journal may hold further cameras. Empty: the session's own camera.
+/// Fails if no camera has that name, unless a journal exists, which may hold more cameras. Empty: the session's camera.
 void check_camera(const std::string& name, const Session& session, const VolumeInfo& volume);
-/// Warns about parts that could not be read since the last call: bricks are read while pictures are drawn.
+/// Warns about parts found to be unreadable since the last call, since bricks are read while pictures are drawn.
 void warn_of_gaps(Opened& opened, const std::string& path, const Common& common);
 
 /// {device, host, by_resource}
 Json bytes_of(Renderer& renderer);
-/// Returns the numbers of bricks loaded and evicted if the volume is paged; null otherwise.
+/// Returns the numbers of loaded and evicted bricks; null if the volume is not paged.
 Json bricks_of(const Renderer& renderer);
 /// Returns work counters by name, summed over the passes.
 Json counters_of(const std::vector<gpu::PassReport>& passes);
 
-/// If the Khronos validation layer is on (SHVR_VALIDATION=1) and has reported anything, fails with its first message.
+/// If the Khronos validation layer is on (SHVR_VALIDATION=1) and has reported anything, fails with the first report.
 void check_validation(Opened& opened);
 
 void add_doctor(CLI::App& program);

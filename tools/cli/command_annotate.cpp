@@ -23,7 +23,7 @@ struct AnnotateCommandOptions {
     bool verbose = false;
 };
 
-/// Drives the workbench by a script, as the window drives it by input.
+/// Drives the workbench by the lines of a script instead of by input to the window.
 class Replay {
 public:
     Replay(ui::Workbench& workbench, const AnnotateCommandOptions& given, LongWork& long_work)
@@ -33,14 +33,14 @@ public:
     ui::Workbench& bench;
     const AnnotateCommandOptions& options;
     LongWork& work;
-    double done = 0.0, share = 0.0;  ///< shares of the script: before this line, and this line
+    double done = 0.0, share = 0.0;  ///< shares of the script: all lines before this one, and this line
     int64_t voxels_changed = 0;
     StrokeResult::ByGroup taken_from{};
     int64_t kept_locked = 0, kept_painted = 0;  ///< voxels
     std::string at;                             ///< "file:line"
 
 private:
-    /// Prints a line for a command, if requested.
+    /// With --verbose, prints a message about the present line.
     template <class... Words>
     void tell(const Words&... words) const
     {
@@ -49,7 +49,7 @@ private:
     const Annotator& annotator() const { return bench.document().annotator; }
     const TraceGraph& trace() const { return annotator().document().trace; }
 
-    /// Returns the result of `act`; an error thrown by it names the line.
+    /// Returns the result of `act`. If `act` throws an error, adds the line's number to the message.
     template <class Act>
     auto in_words(const Act& act) const
     {
@@ -190,7 +190,7 @@ bool is_painting_operation(const ScriptOp& op)
         op);
 }
 
-/// Checks before anything is done whether a script that saves has files to save to.
+/// Checks, before anything is done, whether a script that saves has file names to save to.
 void check_names(const std::vector<ScriptLine>& script, const std::string& name, const std::string& project,
                  const Session& session)
 {
@@ -214,7 +214,7 @@ void check_names(const std::vector<ScriptLine>& script, const std::string& name,
     if (session.density_path.empty() && raises) refuse("density offsets", "density", ".offsets.zarr");
 }
 
-/// Null if the project is a volume without a journal, or no lock can be kept there.
+/// Takes the journal's lock. Null if the project is a volume without a journal, or its folder supports no locks.
 std::shared_ptr<Hold> hold_of(const std::string& project, const Common& common)
 {
     const std::filesystem::path session = session_file_of(project);
@@ -225,7 +225,7 @@ std::shared_ptr<Hold> hold_of(const std::string& project, const Common& common)
     return Hold::take(named.journal_path, "shvr annotate");
 }
 
-/// Without a project, a script's work on a volume would not be stored anywhere.
+/// Refuses a volume without a project, since the script's annotation would not be stored anywhere.
 [[noreturn]] void refuse_bare_volume(const std::string& project)
 {
     const std::filesystem::path given(project);
@@ -296,8 +296,8 @@ void run_annotate(const AnnotateCommandOptions& options)
                {"journal_bytes", annotator.work().journal().bytes}});
 }
 
-/// Performs an action and waits until everything that the action starts is done. Conditions that the window would
-/// merely report are failures here.
+/// Performs an action and waits until all work started by the action is done. Errors that the window would only display
+/// are failures here.
 void perform_to_end(ui::Workbench& bench, const ui::Action& action, const LongWork& work)
 {
     const uint64_t told_before = bench.messages().count();
@@ -313,7 +313,7 @@ void perform_to_end(ui::Workbench& bench, const ui::Action& action, const LongWo
     if (const ui::Message* error = bench.messages().first_after(told_before, ui::Weight::error)) fail(error->text);
 }
 
-/// Replays a user's actions in the window, as logged by `shvr view --log`, without a display.
+/// Replays, without a display, a user's actions in the window as logged by `shvr view --log`.
 void run_actions(const AnnotateCommandOptions& options)
 {
     const std::string name = name_of_script(options.actions);
@@ -328,7 +328,7 @@ void run_actions(const AnnotateCommandOptions& options)
     ui::Workbench bench(renderer, {.has_servo = false,
                                    .saves_outside = options.common.outside,
                                    .settings = config_folder(),
-                                   .has_preferences = false,  // a log has the same effect for each person
+                                   .has_preferences = false,  // a replay must not depend on the user's preferences
                                    .slices_follow = false});
     static_cast<void>(work.begin("opening " + options.project));
     bench.open(options.project, options.common.settings);
@@ -337,7 +337,7 @@ void run_actions(const AnnotateCommandOptions& options)
             options.project, ": cannot be annotated: ", bench.document().why_only_looks(),
             bench.document().outside.empty() ? "; expected it to be closed there first" : "; --outside writes there"));
     static_cast<void>(work.begin("replaying " + name));
-    bench.set_hand_down(true);  // steps of settings stay open until the log ends them
+    bench.set_hand_down(true);  // setting changes stay in one history step until the log ends it
     size_t done = 0;
     for (const auto& [number, action] : actions) {
         work.show(double(done++) / double(actions.size()), {}, -1.0);

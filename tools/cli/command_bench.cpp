@@ -1,4 +1,4 @@
-// shvr bench: measures time and error of each way of drawing, compared with the reference renderer.
+// shvr bench: measures time and error of drawing with various settings, relative to the reference renderer.
 
 #include <iostream>
 #include <sstream>
@@ -22,9 +22,9 @@ struct ErrorBenchOptions {
     std::vector<std::string> sweeps;
     std::vector<std::string> compared;  ///< none, or two files
     std::vector<std::string> mappers = {"fixed"};
-    std::string peer, examples;  ///< empty: paths in the tree in which the program was built
+    std::string peer, examples;  ///< empty: the default paths in the source tree of this program
     int64_t side = 0;            ///< 0: 32 if quick, otherwise 64
-    std::vector<uint32_t> size;  ///< size of pictures; empty: 48 x 36 if quick, otherwise 120 x 90
+    std::vector<uint32_t> size;  ///< size of pictures; empty: 48 x 36 with --quick, otherwise 120 x 90
     bool quick = false, ignores_time = false;
     int rounds = 0;  ///< 0: 3 if quick, otherwise 7
     int mixed = 0;
@@ -54,7 +54,7 @@ Json pareto_row(const bench::SceneResult& scene, const bench::Measured& run)
 constexpr const char* SWEEPS[] = {"blur", "labelling", "proxy"};
 constexpr int64_t MAX_SWEEP_BYTES = 1 << 20;
 
-/// Returns a file of the tree in which the program was built; empty if the file is not there.
+/// Returns a path in the source tree in which the program was built; empty if that file does not exist.
 std::filesystem::path in_tree(const std::filesystem::path& path)
 {
     std::error_code unknown;
@@ -63,7 +63,7 @@ std::filesystem::path in_tree(const std::filesystem::path& path)
     return std::filesystem::exists(found, unknown) ? found : std::filesystem::path();
 }
 
-/// The present commit of the tree in which the program was built. It is that of the program unless files changed.
+/// Returns the present commit of that source tree. The program itself may be older, if files have changed since.
 std::string commit_of_tree()
 {
     const std::filesystem::path folder = in_tree(".git");
@@ -226,7 +226,7 @@ void compare_files(const ErrorBenchOptions& options)
                                  changes.front().scene, ", ", changes.front().run, ": ", changes.front().what));
 }
 
-/// Options that choose pictures and how they are drawn.
+/// Adds the options that select the pictures and how they are drawn.
 void add_picture_options(CLI::App& command, ErrorBenchOptions& options)
 {
     command

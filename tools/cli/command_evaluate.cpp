@@ -1,4 +1,4 @@
-// shvr evaluate: how well an annotation agrees with the ground truth. Needs no device.
+// shvr evaluate: measures how well an annotation agrees with the ground truth. Needs no Vulkan device.
 
 #include <iostream>
 

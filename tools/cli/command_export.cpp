@@ -1,4 +1,4 @@
-// shvr export: annotations in formats of other programs, and their measures. Needs no device.
+// shvr export: writes annotations in the formats of other programs, and their measurements. Needs no Vulkan device.
 
 #include "engine/annotation/work/work.h"
 #include "engine/tasks/export_task.h"
@@ -53,10 +53,10 @@ void run_export(const ExportCommandOptions& options)
 {
     const ExportTask task = task_of(options);
     check(task);
-    // An archived project contains annotations, but they are not read: empty files would be written.
+    // The annotations in an archived project are not read, so an export would silently write empty files.
     if (const std::string archived = archived_project(options.project); !archived.empty()) fail(archived);
     LongWork long_work(options.common.quiet);
-    Gaps gaps;  // annotation is exported regardless of the scan's state
+    Gaps gaps;  // ignored: annotation is exported even if parts of the scan are unreadable
     const OpenedSession opened =
         open_session(options.project, options.common.settings,
                      {.measure = {.progress = long_work.begin("measuring " + options.project), .gaps = &gaps}});

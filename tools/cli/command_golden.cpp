@@ -1,4 +1,4 @@
-// shvr golden: regression pictures, of this repository and of anyone's sessions (tools/golden/USING.md).
+// shvr golden: regression pictures, of this repository and of users' own sessions (tools/golden/USING.md).
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -88,7 +88,7 @@ void run_goldens(const GoldenCommandOptions& options)
                                  outcome.failed.front(), "; see ", outcome.report.string()));
 }
 
-/// Returns the matching goldens; with `only_failed`, those of them that failed in the last run.
+/// Returns the goldens with matching names; with `only_failed`, only those that failed in the last run.
 std::vector<golden::Golden> chosen(const GoldenCommandOptions& options)
 {
     std::vector<golden::Golden> goldens = golden::goldens_in(options.folder, options.pattern);
@@ -128,7 +128,7 @@ void bless(const GoldenCommandOptions& options)
         print_lines(text + "Look at each new picture before it is committed, with its side-car.\n");
 }
 
-/// Runs `shvr golden run` in a separate process: drivers read their environment once.
+/// Runs `shvr golden run` in a separate process, since drivers read their environment only when they are loaded.
 void run_variant(const GoldenCommandOptions& options, const golden::Variant& variant, const fs::path& output)
 {
     std::vector<std::string> arguments{"shvr", "golden",        "run",     options.pattern, "--folder", options.folder,
@@ -156,7 +156,7 @@ void run_variant(const GoldenCommandOptions& options, const golden::Variant& var
     posix_spawn_file_actions_destroy(&actions);
     int status = 0;
     if (error == 0) ::waitpid(child, &status, 0);
-    // Exit status 3 means that pictures differ, which is the measured quantity.
+    // Exit status 3 means that pictures differ, which is the expected result of this measurement.
     if (error != 0 || !WIFEXITED(status) || (WEXITSTATUS(status) != 0 && WEXITSTATUS(status) != 3))
         fail("goldens could not be drawn as ", variant.name, "; expected exit status 0 or 3 of shvr golden run");
 }
@@ -171,7 +171,7 @@ Json spread_json(const golden::Moved& moved)
             {"light", moved.light}};
 }
 
-/// Returns the command line as a user would type it.
+/// Returns the command line that repeats the calibration, for the page.
 std::string calibrate_command(const GoldenCommandOptions& options)
 {
     return sentence("shvr golden calibrate", options.pattern == "*" ? "" : " '" + options.pattern + "'", " --folder ",

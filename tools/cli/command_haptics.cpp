@@ -1,4 +1,4 @@
-// shvr haptics: the sense of touch without a window. Needs no Vulkan device, and only `devices` looks for hardware.
+// shvr haptics: the sense of touch without a window. Needs no Vulkan device; only `devices` looks for hardware.
 
 #include <algorithm>
 #include <cmath>
@@ -42,13 +42,13 @@ std::vector<std::string> choices()
     return names;
 }
 
-/// Returns the session's limits of the voxels that are felt. In traces of older programs hidden voxels are felt, too.
+/// Returns the session's limits on the voxels that are felt. With traces of older programs, hidden voxels are felt too.
 FeltLimits limits_of(const ReplayCommandOptions& options, const Trace& trace, const UnmeasuredSession& opened,
                      LongWork& work)
 {
     const FeelSettings& touch = opened.session.probe.touch;
     if (!trace.feels_seen || touch.feels_hidden) return limits_of_groups(touch.groups);
-    // How intensities look may depend on the values of all voxels, so the volume is measured here.
+    // Whether an intensity is visible may depend on the values of all voxels, so the volume's statistics are needed.
     OpenedSession measured = open_session(options.volume, options.common.settings,
                                           {.measure = {.progress = work.begin("measuring " + options.volume)}});
     const VolumeInfo& info = measured.source->info();
@@ -58,7 +58,7 @@ FeltLimits limits_of(const ReplayCommandOptions& options, const Trace& trace, co
                            window_for(info.type, measured.statistics));
 }
 
-/// Returns the density offsets and, if paint decides which voxels are felt, the paint.
+/// Returns the density offsets and, if the limits depend on paint, also the mask.
 Document felt_document(const ReplayCommandOptions& options, const UnmeasuredSession& opened, const VolumeInfo& info,
                        const FeltLimits& limits)
 {
@@ -75,8 +75,8 @@ Document felt_document(const ReplayCommandOptions& options, const UnmeasuredSess
     return work.document();
 }
 
-/// Makes coarser levels if the trace needs them and the file has none: a large ball is felt on coarser levels at some
-/// sizes and speeds.
+/// Adds coarser levels to the volume if the trace needs them and the file has none: a large ball is felt on coarser
+/// levels at some sizes and speeds.
 std::shared_ptr<const VolumeSource> with_levels_for(const Trace& trace, const ReplayOptions& how,
                                                     std::shared_ptr<const VolumeSource> source, LongWork& work)
 {
@@ -90,8 +90,8 @@ std::shared_ptr<const VolumeSource> with_levels_for(const Trace& trace, const Re
     return needs_levels ? with_levels(std::move(source), HOST_BYTES, work.begin("making coarser levels")) : source;
 }
 
-/// Returns a function that computes relevance as the window's mirror does. A trace without a unit gets the volume's; a
-/// radius in voxels is converted to this unit.
+/// Returns a function that computes relevance as the window's mirror does. Sets the unit of a trace without one to the
+/// volume's unit; a radius in voxels is converted to that unit.
 MakeRelevance relevance_of(const ReplayCommandOptions& options, Trace& trace, ReplayOptions& how, LongWork& work)
 {
     const UnmeasuredSession opened = open_unmeasured_session(options.volume, options.common.settings);
@@ -112,7 +112,7 @@ MakeRelevance relevance_of(const ReplayCommandOptions& options, Trace& trace, Re
     };
 }
 
-/// Returns the replay's options, except the radius, which needs the volume's spacing.
+/// Returns the replay's options except the radius, whose conversion needs the volume's spacing.
 ReplayOptions replay_options(const ReplayCommandOptions& options)
 {
     ReplayOptions how{.mode = chosen<TouchMode>(options.mode),
@@ -127,7 +127,7 @@ ReplayOptions replay_options(const ReplayCommandOptions& options)
     return how;
 }
 
-/// Adds the settings of the last tick to the report.
+/// Adds the settings in effect in the last tick to the report.
 void add_settings(const ReplayCommandOptions& options, const Trace& trace, const ReplayOptions& how, bool is_recorded,
                   Json& report)
 {

@@ -1,4 +1,4 @@
-// shvr haptics bench: the cost of a tick, and whether this machine meets the servo's deadlines.
+// shvr haptics bench: measures the cost of a tick, and whether this machine meets the servo's deadlines.
 
 #include <algorithm>
 #include <chrono>
@@ -22,7 +22,7 @@ struct BenchCommandOptions {
 };
 
 constexpr double SPACING_UM = 10.0;
-constexpr int32_t SIDE = 256;  ///< size of the scene in voxels: a winding tube, a second tube next to it, 1 % noise
+constexpr int32_t SIDE = 256;  ///< side of the scene in voxels: a winding tube, a second tube near it, 1 % noise
 
 /// A deterministic hash.
 uint32_t scattered(uint32_t x)
@@ -69,7 +69,7 @@ void cut(const std::vector<uint8_t>& scene, const glm::dvec3& point, int32_t sid
             }
 }
 
-/// Makes a trace of a hand that follows the tube at 20 mm/s and strays like a human hand. A voxel is 0.25 mm.
+/// Makes a trace of a hand that follows the tube at 20 mm/s and deviates from it like a human hand. A voxel is 0.25 mm.
 Trace make_trace(double radius_voxels, TouchMode mode, size_t ticks)
 {
     Trace trace;
@@ -107,7 +107,7 @@ constexpr Case CASES[] = {{64, 12.0, TouchMode::object},  {64, 12.0, TouchMode::
 Json run_case(const std::vector<uint8_t>& scene, const Case& one, LongWork& work, Json& first)
 {
     constexpr size_t TICKS = 1500;
-    constexpr uint32_t EVERY = 2;  // every second tick grows relevance: far more than a mirror delivers
+    constexpr uint32_t EVERY = 2;  // every second tick gets new relevance: far more often than from a mirror
     const Trace trace = make_trace(one.radius, one.mode, TICKS);
     const MakeRelevance make = [&](const RegionWish& wish, double, RelevancePatch& patch) {
         work.stop_if_asked();

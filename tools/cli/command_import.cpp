@@ -1,4 +1,4 @@
-// shvr import: imports a volume as a project. Needs no Vulkan device.
+// shvr import: makes a project from a volume. Needs no Vulkan device.
 
 #include <sys/resource.h>
 
@@ -21,7 +21,7 @@ struct ImportCommandOptions {
 
 // ---- Numbers of options ---------------------------------------------------------------------------------------------
 
-/// Parses "1,2,3"; null if one of the parts is not a number.
+/// Parses numbers separated by commas, such as "1,2,3"; null if one of the parts is not a number.
 template <class Value>
 std::vector<Value> numbers_of(const std::string& text)
 {
@@ -78,7 +78,7 @@ void run_import(const ImportCommandOptions& options)
 {
     ImportTask task = options.task;
     task.volume = options.volume;
-    // If the project is given as a symbolic link, the link stays, and the project is made at its target.
+    // If the project's path is a symbolic link, keeps the link and makes the project at the link's target.
     std::error_code ignored;
     const bool is_link = std::filesystem::is_symlink(options.project, ignored);
     task.project = is_link ? link_target(options.project) : std::filesystem::path(options.project);

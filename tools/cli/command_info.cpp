@@ -73,7 +73,7 @@ Json to_json(const DescribeResult& described, const std::string& input)
             {"warnings", described.warnings}};
 }
 
-/// Returns a number in groups of three digits: "1 024 000".
+/// Returns a number with its digits in groups of three: "1 024 000".
 std::string grouped(int64_t number)
 {
     std::string digits = std::to_string(number);

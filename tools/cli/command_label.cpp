@@ -1,4 +1,4 @@
-// shvr label: connected components of a whole volume, which need not fit into memory. Needs no device.
+// shvr label: labels connected components of a whole volume, which may exceed memory. Needs no Vulkan device.
 
 #include "engine/annotation/work/work_offsets.h"
 #include "engine/tasks/label_task.h"

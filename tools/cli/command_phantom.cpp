@@ -18,7 +18,7 @@ namespace shvr::cli {
 
 namespace {
 
-/// Voxels are computed and written in slabs of at most this size, or of one row.
+/// Maximum size of the slabs in which voxels are computed and written; a slab has at least one row.
 constexpr int64_t SLAB_BYTES = int64_t{32} << 20;
 
 struct PhantomCommandOptions {
@@ -28,7 +28,7 @@ struct PhantomCommandOptions {
     std::string type = "uint8";
     std::string hand = "right";
     PhantomSpec spec;
-    std::vector<const CLI::Option*> of_capitulum, of_flaws;  ///< options refused for kinds without these parts
+    std::vector<const CLI::Option*> of_capitulum, of_flaws;  ///< options that other kinds of phantoms refuse
     const CLI::Option* double_tubes = nullptr;
     std::vector<std::pair<const CLI::Option*, double PhantomFlaws::*>> flaws;
 };
@@ -79,7 +79,7 @@ void write_voxels(const std::filesystem::path& path, const VolumeSource& volume,
 }
 
 /// Writes FOLDER/NAME.nhdr and NAME.raw. Opens the header first, so that an unwritable name fails before the long work,
-/// and commits it last, so that no header describes voxels not yet written.
+/// and commits it last, so that a header never describes voxels that are not written yet.
 std::string write_volume(const std::filesystem::path& folder, const std::string& name, const VolumeSource& volume,
                          LongWork& work)
 {
@@ -92,7 +92,7 @@ std::string write_volume(const std::filesystem::path& folder, const std::string&
     return header.string();
 }
 
-/// Refuses options without effect: otherwise a phantom that lacks a requested property would go unnoticed.
+/// Refuses options that the phantom's kind ignores, so that a missing property does not go unnoticed.
 void check_use(const PhantomCommandOptions& options)
 {
     const std::string& kind = options.spec.kind;

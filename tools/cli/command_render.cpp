@@ -1,4 +1,4 @@
-// shvr render: a picture of a session, a project or a bare volume.
+// shvr render: draws a picture of a session, a project or a bare volume.
 
 #include <cmath>
 
@@ -24,8 +24,8 @@ std::string why_incomplete(const Picture& picture)
     return picture.warnings.empty() ? "not all bricks that rays visited could be drawn" : picture.warnings.front();
 }
 
-/// States which voxels a complete picture shows: with `render.detail` above 0, paged volumes of several levels show
-/// coarser ones than resident volumes do.
+/// Describes the detail of a complete picture: if `render.detail` is above 0, paged volumes with several levels are
+/// drawn at coarser levels than resident volumes.
 Json detail_of(const Renderer& renderer, const RenderSettings& render)
 {
     const int level = renderer.volume().finest_level();
@@ -35,7 +35,7 @@ Json detail_of(const Renderer& renderer, const RenderSettings& render)
             {"step_voxels", std::ldexp(render.step_voxels, level)}};
 }
 
-/// Draws all parts. If the picture lacks something, or work is stopped, fails and leaves the old file as it was.
+/// Draws all parts. If the picture is incomplete or the work is cancelled, fails and keeps the old file unchanged.
 Picture draw(PictureFile& file, const Opened& opened, const RenderCommandOptions& options, LongWork& work)
 {
     try {

@@ -43,7 +43,7 @@ StudySize size_named(const std::string& text)
     return StudySize::standard;
 }
 
-/// A line for each condition, with the mean of its main outcome.
+/// Prints a line for each condition, with the mean of its main outcome.
 void say_means(const std::vector<StudyRow>& rows, const Common& common)
 {
     for (const StudyCondition& condition : conditions_of(rows)) {

@@ -92,7 +92,7 @@ void run_view(const ViewCommandOptions& options)
                           .screen_texts = screen_texts ? screen_texts : "",
                           .version = SHVR_VERSION};
     if (!options.size.empty()) wanted.window_size = parse_size(options.size);
-    constexpr std::chrono::milliseconds MOST{700};  // leaves time for the system to end a process within a second
+    constexpr std::chrono::milliseconds MOST{700};  // so that the process ends before systems kill it, after a second
     const StopRequest stop;
     const StopDeadline deadline(MOST);
     wanted.stop = &stop.flag();

@@ -1,5 +1,5 @@
-// shvr haptics devices: which devices are plugged in and how they can be used; and raw reports of a device, for
-// analysing their layout.
+// shvr haptics devices: lists the haptic devices that are plugged in and how they can be used; or records raw reports
+// of a device, for an analysis of their layout.
 
 #include <chrono>
 #include <iostream>

@@ -11,11 +11,11 @@ namespace shvr::cli {
 
 /// {p50, p99, max} in microseconds, from nanoseconds.
 Json quantiles_us(std::vector<uint64_t> nanoseconds);
-/// `unit`: unit of the volume's lengths. If this is not a physical unit, values in micrometres are null.
+/// `unit`: the volume's unit of length. If it is no physical unit, values in micrometres are null.
 Json report_of(const ReplayResult& result, const std::string& unit);
 
-/// Measures speed against error of the proxy, with sample points and with exact integration, for several ball sizes.
-/// Writes CSV, and a plot if `svg` is not empty. Returns a sentence for each row.
+/// Measures speed against error of the proxy, from sample points and from exact integration, for several ball sizes.
+/// Writes CSV, and a plot unless `svg` is empty. Returns a sentence for each row.
 std::vector<std::string> sweep_proxy(const std::string& csv, const std::string& svg, LongWork& work);
 
 void add_haptics_bench(CLI::App& haptics);

@@ -1,4 +1,4 @@
-// shvr haptics bench --sweep: cost and accuracy of exact integration, compared with sample points.
+// shvr haptics bench --sweep: compares cost and accuracy of exact integration with those of sample points.
 
 #include <algorithm>
 #include <chrono>
@@ -25,11 +25,11 @@ struct Row {
     std::string method;
     double radius = 0.0;        ///< voxels
     int points = 0;             ///< 0: exact
-    double error = 0.0;         ///< RMS difference from `slow_mean`, relative to the radius
+    double error = 0.0;         ///< RMS difference from `slow_mean`, relative to the ball's radius
     double microseconds = 0.0;  ///< median of all positions
 };
 
-/// Makes a slanted tube through the middle, half as wide as the ball, with 1 % noise.
+/// Makes a slanted tube through the middle of the patch, half as wide as the ball, with 1 % noise.
 void make_scene(double radius, RelevancePatch& patch)
 {
     std::mt19937 random(5);
@@ -122,7 +122,7 @@ std::vector<Row> sweep(LongWork& work)
             rows.push_back(measured("even", radius, count, truth, [&](const glm::dvec3& at) {
                 return find_sampled_proxy(*patch, at, radius, even);
             }));
-            // Uses the mean square of several draws, since a single one may be lucky.
+            // Averages the squares of several draws, since a single draw may be better than usual by chance.
             Row all{"random", radius, count};
             for (int draw = 0; draw < DRAWS; ++draw) {
                 const auto drawn = std::span(random).subspan(size_t(draw * count), size_t(count));
@@ -139,7 +139,7 @@ std::vector<Row> sweep(LongWork& work)
     return rows;
 }
 
-/// Plots time to the right, error upwards, on logarithmic axes; a mark per row, a colour per method, a size per radius.
+/// Plots error over time on logarithmic axes: a mark per row, a colour per method, a mark size per radius.
 std::string plot_of(const std::vector<Row>& rows)
 {
     constexpr double WIDTH = 640.0, HEIGHT = 440.0, LEFT = 70.0, BOTTOM = 60.0, TOP = 20.0, RIGHT = 150.0;
@@ -180,7 +180,7 @@ std::string plot_of(const std::vector<Row>& rows)
     for (const Row& row : rows)
         svg << "<circle cx=\"" << x_of(row.microseconds) << "\" cy=\"" << y_of(row.error) << "\" r=\""
             << 2.0 + row.radius / 6.0 << "\" fill=\"" << color_of(row.method) << "\" fill-opacity=\"0.7\"/>\n";
-    // The marks of the three methods with the same number of points are close together and share one label.
+    // The three methods' marks for the same number of points are close together, so they share one label.
     for (const Row& row : rows)
         if (row.points > 0 && row.radius == RADII[std::size(RADII) - 1])
             text(x_of(row.microseconds) + 9.0, y_of(row.error) - 6.0, "start", std::to_string(row.points));

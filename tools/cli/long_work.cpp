@@ -17,7 +17,7 @@ namespace shvr::cli {
 
 namespace {
 
-/// Interval at which the line is updated while the work reports nothing.
+/// Interval at which the progress line's time is updated while the work reports nothing.
 constexpr std::chrono::milliseconds TICK{250};
 
 double seconds_now()
@@ -25,7 +25,7 @@ double seconds_now()
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// The progress line, and a thread that updates its time.
+/// Shows the progress line; a thread of its own keeps the time up to date.
 class Shown {
 public:
     Shown()
@@ -86,17 +86,17 @@ private:
     bool is_busy_ = false;
     double fraction_ = -1.0, seconds_left_ = -1.0;  ///< below 0: unknown
     std::string detail_;
-    std::jthread ticker_;  ///< last, since it uses all members above
+    std::jthread ticker_;  ///< declared last, so that it stops before the members that it uses are destroyed
 };
 
 std::string last_what;
-std::unique_ptr<Shown> shown;  ///< instance of the running LongWork; null if it is quiet
+std::unique_ptr<Shown> shown;  ///< that of the running LongWork; null if it is quiet
 
 }  // namespace
 
 LongWork::LongWork(bool quiet)
 {
-    std::signal(SIGXFSZ, SIG_IGN);  // then exceeding the file size limit is an error like a full disk
+    std::signal(SIGXFSZ, SIG_IGN);  // so that exceeding the file size limit is an error, like a full disk
     if (!quiet) shown = std::make_unique<Shown>();
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Shared by commands with long work: they show progress (engine/base/progress.h), and Ctrl-C ends them with a
+// Shared by commands with long work: shows progress (engine/base/progress.h), and makes Ctrl-C end the command with a
 // sentence.
 
 #include <atomic>
@@ -11,10 +11,10 @@
 
 namespace shvr::cli {
 
-/// At most one exists, on the thread that runs the command. During its lifetime, the first Ctrl-C (SIGINT) or SIGTERM
-/// asks the command to stop (stop.h); the command then ends as after an error: files are complete or absent. A second
-/// signal ends the program at once. Unless `quiet`, a line on standard error shows work that takes longer than a
-/// second, including work that never reports progress.
+/// At most one instance exists, on the thread that runs the command. During its lifetime, the first Ctrl-C (SIGINT) or
+/// SIGTERM asks the command to stop (stop.h); the command then ends as after an error, with its files either complete
+/// or absent. A second signal ends the program at once. Unless `quiet`, a line on standard error shows the progress of
+/// work that takes longer than a second, even if the work reports none.
 class LongWork final : public ProgressReporter {
 public:
     explicit LongWork(bool quiet);
@@ -32,13 +32,13 @@ private:
     StopRequest stop_;
 };
 
-/// Returns the work that was begun last, in words: "loading scan.nrrd"; empty: none was begun.
+/// Returns the description of the last work that was begun, such as "loading scan.nrrd"; empty: none was begun.
 std::string last_begun();
-/// Returns the largest amount of memory that this process has held.
+/// Returns the peak memory use of this process.
 int64_t peak_mebibytes();
-/// Erases the progress line from the terminal until the next update; call it before anything is printed.
+/// Erases the progress line from the terminal until its next update. Call before printing anything.
 void clear_progress();
-/// Prints a line on standard error without mixing it with the progress line.
+/// Prints a line on standard error without garbling the progress line.
 void print_beside_progress(const std::string& line);
 
 }  // namespace shvr::cli

@@ -30,7 +30,7 @@ std::string usage_error(const CLI::App& program, const CLI::ParseError& error)
     return text + "; see " + command + " --help";
 }
 
-/// Describes a first argument that is not a command.
+/// Returns the error message for a first argument that is not a command.
 std::string no_command(const CLI::App& program, const std::string& found)
 {
     std::string known;
@@ -41,7 +41,7 @@ std::string no_command(const CLI::App& program, const std::string& found)
            "; expected one of " + known + "; see shvr --help";
 }
 
-/// Refuses empty options and names: a script with an unset variable would otherwise read or write something else.
+/// Refuses empty options and names: with an unset variable, a script would otherwise read or write the wrong files.
 void refuse_empty(int argc, char** argv)
 {
     for (int i = 1; i < argc; ++i) {
@@ -58,8 +58,8 @@ void refuse_empty(int argc, char** argv)
     }
 }
 
-/// Keeps the queries of addresses, which are credentials, and takes them out of the arguments, before any of those is
-/// printed or stored.
+/// Removes the query parts of URLs, which are credentials, from the arguments, and stores them separately: arguments
+/// may be printed or stored later.
 std::vector<std::string> without_queries(int argc, char** argv)
 {
     constexpr std::string_view SETTING = "volume.path=";
@@ -113,7 +113,7 @@ int run(int argc, char** argv)
     return Exit::done;
 }
 
-/// Returns " while loading scan.nrrd", or empty text if nothing long was begun.
+/// Returns " while loading scan.nrrd", or an empty text if no long work has begun.
 std::string while_doing()
 {
     const std::string what = shvr::cli::last_begun();
@@ -122,13 +122,13 @@ std::string while_doing()
 
 int report(const char* message, Exit status)
 {
-    // Arguments and files may contain escape sequences of terminals.
+    // Replaces control characters: arguments and files may contain terminal escape sequences.
     std::fprintf(stderr, "shvr: %s\n", shvr::printable(message).c_str());
     return status;
 }
 
-/// Makes freed large blocks go back to the system. By default glibc raises its threshold for mapping blocks up to 32
-/// MiB, and growing lists (the surfaces of a trace) leave holes that fit nothing: 115 MB at 40,000 nodes.
+/// Makes malloc return large freed blocks to the system. By default glibc raises its mmap threshold up to 32 MiB, and
+/// the holes that growing lists (the surfaces of a trace) leave in the heap cannot be reused: 115 MB at 40,000 nodes.
 void keep_heap_compact()
 {
     static_cast<void>(::mallopt(M_MMAP_THRESHOLD, 1 << 20));

@@ -7,10 +7,10 @@
 
 namespace shvr::cli {
 
-/// Sleeps in some turns of such a loop, which would otherwise occupy cores that a software device needs to draw.
+/// Sleeps in some iterations of such a loop: without sleep, it would occupy cores that a software device draws with.
 inline void rest(uint64_t turn)
 {
-    constexpr uint64_t TURNS_AT_ONCE = 8;  // sleeps are rare, so as not to slow down work that never waits
+    constexpr uint64_t TURNS_AT_ONCE = 8;  // sleeps rarely, so that work that never waits is not slowed down
     if (turn % TURNS_AT_ONCE == TURNS_AT_ONCE - 1) std::this_thread::sleep_for(std::chrono::microseconds(200));
 }
 

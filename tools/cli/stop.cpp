@@ -20,8 +20,8 @@ std::atomic<bool> command_listens = false, is_requested = false;
 std::atomic<int> first_signal = 0;
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 
-/// Ends the process at a deadline after the request; without one, `deadline` is all zeros. A timer needs no thread, so
-/// it also works while the main thread waits for a driver that does not answer.
+/// Timer that ends the process if it is still running at a deadline after the request; `deadline` is 0 if there is
+/// none. A timer needs no thread, so it works even while the main thread waits for a driver that does not answer.
 timer_t overdue_timer;
 itimerspec deadline{};
 
@@ -32,14 +32,14 @@ bool has_deadline()
 
 constexpr int HANDLED[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
 
-/// Skips the sentence if standard error is a pipe that is full: the end must not wait for it.
+/// Prints a sentence, unless standard error is a full pipe: writing would block, and the process must end.
 void say(const char* text)
 {
     pollfd standard_error{.fd = STDERR_FILENO, .events = POLLOUT, .revents = 0};
     if (::poll(&standard_error, 1, 0) == 1) static_cast<void>(::write(STDERR_FILENO, text, std::strlen(text)) > 0);
 }
 
-/// Ends the process by the signal itself, so that the parent process sees it and a shell's loop ends, too.
+/// Ends the process by the signal itself, so that the parent process sees the signal, and a shell's loop ends, too.
 void end_by(int signal_number)
 {
     std::signal(signal_number, SIG_DFL);
@@ -60,7 +60,7 @@ extern "C" void stop(int signal_number)
         return;
     }
     remove_temporary_files();
-    // After SIGPIPE, nothing is printed: the reader has left, and standard error may be the same pipe.
+    // After SIGPIPE nothing is printed: the reader of the output is gone, and standard error may be the same pipe.
     if (signal_number != SIGPIPE)
         say(signal_number == SIGINT    ? "shvr: stopped by Ctrl-C; no file is left half written\n"
             : signal_number == SIGTERM ? "shvr: stopped by SIGTERM; no file is left half written\n"
@@ -95,7 +95,7 @@ void end_in_words()
 {
     for (const int number : HANDLED) {
         struct sigaction now {};
-        // A signal that the parent process ignores stays ignored, as for background jobs.
+        // If the parent process had a signal ignored, as shells do for background jobs, it stays ignored.
         if (::sigaction(number, nullptr, &now) == 0 && now.sa_handler == SIG_IGN) continue;
         struct sigaction action {};
         action.sa_handler = stop;

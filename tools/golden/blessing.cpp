@@ -53,7 +53,7 @@ bool is_up_to_date(const Golden& golden, const Drawn& drawn)
         why_other_work(golden, drawn))
         return false;
     const Json side_car = parsed_side_car(golden);
-    const size_t counters = drawn.work_is_exact ? drawn.work.size() : 0;  // a new counter is not in the side-car yet
+    const size_t counters = drawn.work_is_exact ? drawn.work.size() : 0;  // the side-car lacks counters added later
     return (side_car.contains("work") ? side_car["work"].size() : 0) == counters &&
            side_car.value("class", "") == spelled(golden.strictness);
 }
@@ -111,7 +111,7 @@ std::vector<std::pair<std::string, uint64_t>> work_of(std::span<const gpu::PassR
 std::vector<std::pair<std::string, uint64_t>> counters_of(const Picture& picture)
 {
     std::vector<std::pair<std::string, uint64_t>> counters = work_of(picture.passes);
-    uint64_t dispatches = 0;  // dispatches as declared: a busy machine splits long passes into more
+    uint64_t dispatches = 0;  // as declared, since busy machines split long passes into more
     for (const gpu::PassReport& pass : picture.passes) dispatches += pass.tiles;
     counters.emplace_back("passes", picture.passes.size());
     counters.emplace_back("dispatches", dispatches);
@@ -143,7 +143,7 @@ std::optional<std::string> why_other_work(const Golden& golden, const Drawn& dra
             differing +=
                 sentence(differing.empty() ? "" : ", ", name, " ", value, " (recorded: ", recorded->dump(), ")");
     }
-    // Checked on any machine, since a counter that is not recorded guards nothing.
+    // Checked on every machine, since a counter without a recorded value detects nothing.
     if (!missing.empty())
         return sentence(golden.side_car().string(), ": work lacks ", missing,
                         "; expected every counter of the picture, as ", bless_command(golden), " records them");
@@ -160,7 +160,7 @@ Drawn drawn_by(Studio& studio)
             .light = picture.image,
             .maker = maker_of(studio.renderer()),
             .work = counters_of(picture),
-            // Which bricks of a paged volume are present when a pass begins depends on the disk and on threads.
+            // Which bricks of a paged volume are present when a pass begins depends on the disk and the threads.
             .work_is_exact = !studio.renderer().volume().counts()};
 }
 
@@ -180,7 +180,7 @@ Blessed bless(const Golden& golden, const std::string& reason, const StudioOptio
             blessed.new_hash = "unchanged";
             return blessed;
         }
-        // A picture that passes is kept: otherwise many small changes, each within the class's limits, would add up.
+        // Keeps the old picture if the new one passes. Otherwise many changes within the class's limits would add up.
         if (!why_different(drawn.image, before, golden.strictness))
             png = read_file(golden.picture(), MAX_PICTURE_BYTES);
     }

@@ -1,6 +1,6 @@
 #pragma once
-// Measures how much a driver's freedom changes each golden: draws the same pictures on the same device with other
-// vector widths, thread counts, instruction sets and poisoned memory. A class is right if it allows twice the spread.
+// Measures how much each golden varies with a driver's freedom: draws it on the same device with other vector widths,
+// thread counts, instruction sets and poisoned memory. A class fits a golden if the class allows twice the spread.
 
 #include <functional>
 #include <map>
@@ -11,20 +11,20 @@
 
 namespace shvr::golden {
 
-/// A configuration in which lavapipe is run; the first variant changes nothing.
+/// An environment in which lavapipe runs; the first variant is the unchanged environment.
 struct Variant {
     std::string name;
     std::vector<std::pair<std::string, std::string>> environment;
 };
 const std::vector<Variant>& variants();
 
-/// Draws the goldens into `output`, also in linear light, in a process with the variant's environment; or throws.
+/// Draws the goldens into `output`, also in linear light, in a process with the variant's environment. May throw.
 using DrawAll = std::function<void(const Variant& variant, const std::filesystem::path& output)>;
 
 /// The difference between a variant's picture and the first variant's.
 struct Moved {
     PixelDifference pixels;  ///< in 8 bits, of 255
-    double light = 0.0;      ///< maximum in linear light: shows that a variant does change the arithmetic
+    double light = 0.0;      ///< maximum in linear light; above 0, the variant does change the arithmetic
 };
 
 struct Spread {
@@ -39,7 +39,7 @@ struct Spread {
 std::vector<Spread> calibrate(const std::vector<Golden>& goldens, const std::filesystem::path& output,
                               const DrawAll& draw_all);
 
-/// Returns the spreads as a page of Markdown, for version control. `command`: the command that makes the page.
+/// Returns the spreads as a Markdown page for version control. `command`: the command that generates the page.
 std::string table_of(const std::vector<Spread>& spreads, const std::string& command);
 
 /// Whether `strictness` allows twice `most`.

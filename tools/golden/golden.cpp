@@ -25,7 +25,7 @@ void read_script_lines(Golden& golden, const JsonNode& lines)
     }
 }
 
-/// Returns the largest difference of any channel between both pictures at a pixel, in 8-bit levels.
+/// Returns the largest difference among a pixel's channels between both pictures, in 8-bit levels.
 int apart(const Image8& a, const Image8& b, size_t pixel)
 {
     int most = 0;
@@ -34,7 +34,7 @@ int apart(const Image8& a, const Image8& b, size_t pixel)
     return most;
 }
 
-/// Returns `actual` after replacing the most different pixels (EDGE_FRACTION of all) by pixels of `expected`.
+/// Returns `actual` with the most different pixels (EDGE_FRACTION of all pixels) replaced by those of `expected`.
 Image8 without_edges(Image8 actual, const Image8& expected)
 {
     std::vector<std::pair<int, size_t>> differing;

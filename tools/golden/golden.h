@@ -1,6 +1,6 @@
 #pragma once
-// Regression pictures ("goldens"): a folder of NAME.json, each with the session to draw, NAME.png as the expected
-// result, and NAME.blessed.json, which states who drew it and why. README.md lists the keys. Plain data; any thread.
+// Regression pictures ("goldens") in a folder. Each has NAME.json, which names the session to draw, the expected
+// NAME.png, and NAME.blessed.json, which records who drew it and why. README.md lists the keys. Plain data; any thread.
 
 #include <filesystem>
 #include <optional>
@@ -18,7 +18,7 @@ namespace shvr::golden {
 enum class Strictness {
     exact,  ///< the same bits
     tight,  ///< TIGHT_TOLERANCE: rounding of another driver or processor
-    edge,   ///< like tight, except for EDGE_FRACTION of the pixels, which may be anything: a silhouette off by a pixel
+    edge,   ///< tight, but EDGE_FRACTION of the pixels may differ by any amount: a silhouette off by a pixel
 };
 inline constexpr Spelling<Strictness> STRICTNESSES[] = {
     {Strictness::exact, "exact"}, {Strictness::tight, "tight"}, {Strictness::edge, "edge"}};
@@ -32,7 +32,7 @@ struct Golden {
     std::string name;
     std::filesystem::path folder;
     std::string why;       ///< what the picture guards
-    std::string loosened;  ///< reason for this strictness; empty unless it is edge
+    std::string loosened;  ///< reason for the strictness `edge`; otherwise empty
     Strictness strictness = Strictness::tight;
     std::filesystem::path session_path;  ///< path of a session, project or volume file; empty: `session_text`
     std::string session_text;            ///< JSON; relative paths are relative to `folder`
@@ -42,22 +42,22 @@ struct Golden {
     std::filesystem::path file() const { return folder / (name + ".json"); }
     std::filesystem::path picture() const { return folder / (name + ".png"); }
     std::filesystem::path side_car() const { return folder / (name + ".blessed.json"); }
-    /// Opens the volume and reads it once for its statistics.
+    /// Opens the volume and reads all of its voxels once, for statistics.
     OpenedSession open() const;
 };
 
-/// Fails with a sentence if the file does not conform to README.md.
+/// Reads the description of a golden. Fails with a sentence if the file does not conform to README.md.
 Golden read_golden(const std::filesystem::path& file);
-/// Returns the goldens in `folder` with names that match `pattern` ('*', 'tubes_*'), by name. Fails if none match.
+/// Returns the goldens in `folder` whose names match `pattern` ('*', 'tubes_*'), sorted by name. Fails if none match.
 std::vector<Golden> goldens_in(const std::filesystem::path& folder, const std::string& pattern = "*");
 
 /// Shell patterns: '*', '?', '[ab]'.
 bool matches(const std::string& name, const std::string& pattern);
 
-/// Returns why `actual` does not match `expected`: each limit exceeded, with the value found; null if it matches.
+/// Returns why `actual` does not match `expected`: each limit exceeded, with the value found. Null if they match.
 std::optional<std::string> why_different(const Image8& actual, const Image8& expected, Strictness strictness);
 
-/// Returns the 64-bit FNV-1a hash of a picture's file as 16 digits. Protects against mistakes, not against malice.
+/// Returns the 64-bit FNV-1a hash of a picture's file as 16 digits. Detects accidents, not deliberate changes.
 std::string hash_of(std::span<const std::byte> bytes);
 
 }  // namespace shvr::golden

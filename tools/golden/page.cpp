@@ -1,4 +1,4 @@
-// The page and the JUnit file of a run.
+// Writes the HTML page and the JUnit file of a run.
 
 #include <algorithm>
 #include <array>
@@ -25,7 +25,7 @@ repeating-conic-gradient(#ddd 0 25%,#fff 0 50%) 0/16px 16px}
 .pair .over{position:absolute;left:0;top:0}.blink .over{visibility:hidden}input[type=range]{width:320px;display:block}
 .pixel{font:12px monospace;height:1.3em}pre{overflow-x:auto})";
 
-// A slider shows how much of the actual picture covers the expected one; key b, or the box, blinks between them.
+// A slider sets how much of the actual picture covers the expected one. The key b, or a check box, alternates both.
 constexpr const char* SCRIPT = R"(<script>
 for (const pair of document.querySelectorAll('.pair')) {
   const over = pair.querySelector('.over'), under = pair.querySelector('img'), figure = pair.parentNode;
@@ -53,7 +53,7 @@ document.onkeydown = event => {
 </script>
 )";
 
-/// Black, violet, red, orange, yellow, white: even steps of lightness, and never two colours of one lightness.
+/// Maps differences to black, violet, red, orange, yellow and white: lightness increases in even steps.
 Image8 heat_map(const Image8& a, const Image8& b)
 {
     constexpr std::array<std::array<double, 3>, 6> STOPS{

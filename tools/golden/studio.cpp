@@ -8,10 +8,10 @@ namespace shvr::golden {
 
 namespace {
 
-/// Whether `set_environment`, not the user, has chosen the device.
+/// Whether the device was chosen by `set_environment` instead of the user.
 bool is_default_device = false;
 
-/// If the user has named no device, the error message states why lavapipe is needed.
+/// Creates the renderer. If the user has named no device, an error states that lavapipe is needed.
 Renderer make_renderer(const StudioOptions& options)
 {
     try {

@@ -1,5 +1,5 @@
 #pragma once
-// Draws goldens, each on a device of its own, so that no picture depends on earlier ones.
+// Draws goldens, each on a new device, so that no picture depends on earlier pictures.
 //
 // One thread.
 
@@ -12,11 +12,11 @@
 
 namespace shvr::golden {
 
-/// Part of the name of Mesa's lavapipe device.
+/// Text by which the name of Mesa's lavapipe device is recognised.
 inline constexpr std::string_view LAVAPIPE = "llvmpipe";
 
-/// Sets the environment for all goldens drawn later in this process. Makes lavapipe sample exactly (its fast 8-bit path
-/// is off by 1.6 levels), and selects it as the device, unless the environment or `device` states another.
+/// Sets environment variables for all goldens drawn later in this process. Makes lavapipe sample exactly, since its
+/// fast 8-bit path is off by 1.6 levels, and selects lavapipe, unless the environment or `device` names another device.
 void set_environment(const std::string& device = "");
 
 struct StudioOptions {
@@ -27,7 +27,7 @@ struct StudioOptions {
 
 class Studio {
 public:
-    /// Opens the session, loads its volume and annotation, and paints. Fails if a line of the script paints nothing.
+    /// Opens the session, loads volume and annotation, and paints. Fails if a line of the paint script paints nothing.
     explicit Studio(const Golden& golden, const StudioOptions& options = {});
 
     Renderer& renderer() { return renderer_; }
@@ -38,7 +38,7 @@ public:
     /// Loads the volume and paints again.
     void set_up();
 
-    /// May be called repeatedly. Fails if the picture is incomplete, or contains NaN or infinities.
+    /// Draws a picture; may be called repeatedly. Fails if the picture is incomplete, or contains NaN or infinities.
     Image8 draw();
     Image8 draw(const Session& session, const Camera& camera);
     /// Counts as RenderOptions::count_work does, by pass.
@@ -46,7 +46,7 @@ public:
     Picture picture_of(const Session& session, const Camera& camera, bool counted);
     /// What is painted.
     const Document& document() const { return annotator_->document(); }
-    /// Returns the messages since the last call; with `validation`, any message is a failure.
+    /// Returns the validation messages since the last call. With `validation`, any such message is a failure.
     std::vector<std::string> take_validation_messages() { return renderer_.device().take_validation_messages(); }
 
 private:

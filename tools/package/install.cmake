@@ -1,5 +1,5 @@
-# What `cmake --install` and the packages put where. Files are found relative to the program (engine/base/assets.h), so
-# that the tree can be moved.
+# Files that `cmake --install` and the packages install, and where. SHVR finds them relative to the program
+# (engine/base/assets.h), so that the installed tree can be moved.
 
 set(CMAKE_INSTALL_DOCDIR share/doc/shvr CACHE PATH "Folder of README, changes and copyright")
 include(GNUInstallDirs)
@@ -15,7 +15,7 @@ install(FILES tools/package/shvr.mime.xml DESTINATION ${shared}/mime/packages RE
 install(FILES tools/package/shvr.svg DESTINATION ${shared}/icons/hicolor/scalable/apps)
 install(FILES README.md tools/package/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
-# Manual pages and completions, written by the program itself, and the icon's sizes. Only releases need them.
+# Manual pages and completions, which the program itself writes, and icons of several sizes. Only for releases.
 if(CMAKE_BUILD_TYPE STREQUAL "Release")
     set(made ${CMAKE_BINARY_DIR}/package)
     file(MAKE_DIRECTORY ${made})
@@ -43,8 +43,8 @@ if(CMAKE_BUILD_TYPE STREQUAL "Release")
         endforeach()
     endif()
     add_custom_target(package_files ALL DEPENDS ${products})
-    # The user manual: its steps are carried out for its pictures, which takes a Vulkan device and a minute, so it is
-    # made on demand:  cmake --build build/release --target manual
+    # The user manual. Its pictures are made by carrying out its steps, which needs a Vulkan device and a minute, so it
+    # is built on demand:  cmake --build build/release --target manual
     execute_process(COMMAND /usr/bin/python3 -c "import markdown" RESULT_VARIABLE has_no_markdown ERROR_QUIET)
     if(has_no_markdown)
         message(STATUS "No target manual: python3-markdown is missing")

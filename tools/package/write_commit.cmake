@@ -1,8 +1,8 @@
-# Writes OUTPUT, a C++ source with the commit of the sources in SOURCE; keeps a file that says the same.
+# Writes OUTPUT, a C++ source with the commit of the sources in SOURCE; leaves an up-to-date file unchanged.
 #
 #   cmake -DSOURCE=... -DOUTPUT=... -P tools/package/write_commit.cmake
 #
-# SHVR_COMMIT in the environment is used instead, where sources come without their history.
+# For sources without git history, the environment variable SHVR_COMMIT names the commit.
 
 set(commit "$ENV{SHVR_COMMIT}")
 if(commit STREQUAL "")

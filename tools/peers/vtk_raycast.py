@@ -55,7 +55,7 @@ def open_volume(vtk, path):
     reader.SetDataScalarType(types[fields["type"]])
     reader.SetDataExtent(0, sizes[0] - 1, 0, sizes[1] - 1, 0, sizes[2] - 1)
     reader.SetDataSpacing(spacing)
-    # `padded` voxels on every side repeat the border, so that the volume extends to its outer faces.
+    # `padded`: number of voxels on each side that repeat the border, so that the volume extends to its outer faces.
     padded = int(fields.get("padded", 0))
     reader.SetDataOrigin([(0.5 - padded) * s for s in spacing])
     if fields.get("endian", "little") == "little":
@@ -233,8 +233,8 @@ class Drawn:
         self.window.SetMultiSamples(0)
         self.window.SetSize(scene.settings["size"])
         self.window.AddRenderer(self.renderer)
-        # The OpenGL mapper adds ambient light without the volume's colour, so the light carries the colour of a volume
-        # of one colour. The fixed-point mapper multiplies by it.
+        # The OpenGL mapper adds ambient light without multiplying by the volume's colour, so the light is given the
+        # colour, which must be the same everywhere. The fixed-point mapper does multiply.
         ambient = linear_color(scene.points[0]["color"]) if kind == "gpu" else [1.0, 1.0, 1.0]
         aim(vtk, self.renderer, scene.camera, scene.light["direction"], ambient)
 
@@ -262,7 +262,7 @@ def draw(options):
     drawn = Drawn(scene, options.mapper, scene.settings["step_voxels"], options.threads)
     for frame in range(options.frames + 1):
         say(frame=frame, ms=drawn.draw())
-    # Querying the driver's name costs memory and time.
+    # Measured before the driver's name is queried, since the query costs memory and time.
     peak_mib = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     if options.output:
         drawn.save(options.output)

@@ -6,7 +6,7 @@ namespace shvr::report {
 
 namespace {
 
-// A letter is stored as five columns, from the left; bit 0 is its top row, bit 7 the row below the base line.
+// Each letter is five columns, from the left. Bit 0 of a column is the top row, bit 7 the row below the base line.
 constexpr uint8_t LETTERS[95][GLYPH_COLUMNS] = {
     {0x00, 0x00, 0x00, 0x00, 0x00},  // space
     {0x00, 0x00, 0x5F, 0x00, 0x00},  // !

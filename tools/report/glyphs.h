@@ -1,5 +1,5 @@
 #pragma once
-// Letters of 5 x 7 pixels, for plots as pixels: ASCII from space to '~'. Pure; any thread.
+// Bitmap letters of 5 x 7 pixels, for plots drawn as pixels: ASCII from space to '~'. Pure; any thread.
 
 namespace shvr::report {
 

@@ -7,9 +7,9 @@ namespace shvr::report {
 
 namespace {
 
-/// For 3, 4, ... measured times: factor on half the distance from the minimum to the 95th percentile, such that one
-/// pair in a thousand of equal work differs by more. Each is the larger of the factors for normal and for exponential
-/// noise (tests/unit/instruments/noise_test.cpp). From 9 times on, 1 suffices.
+/// Factors for 3, 4, ... measured times, on half the distance from the minimum to the 95th percentile, such that one
+/// pair in a thousand of equal work differs by more. Each is the larger of the factors for normal and exponential noise
+/// (tests/unit/instruments/noise_test.cpp). From 9 times on, the factor is 1.
 constexpr double FOR_FEW[] = {5.8, 2.9, 2.0, 1.55, 1.35, 1.15};
 
 }  // namespace

@@ -1,20 +1,20 @@
 #pragma once
-// Estimates how far the medians of equal work differ by chance. Pure; any thread.
+// Estimates how much the medians of equal work differ by chance. Pure; any thread.
 
 #include <cstddef>
 #include <optional>
 
 namespace shvr::report {
 
-/// The minimum number of measured times that noise can be estimated from.
+/// Minimum number of measured times for an estimate of the noise.
 constexpr size_t MIN_TIMES = 3;
 
-/// Returns the noise of the median of `count` measured times: half the distance from minimum to 95th percentile,
-/// enlarged for small counts, since few values spread less than many. Null if there are too few.
+/// Returns the noise of the median of `count` measured times: half the distance from the minimum to the 95th
+/// percentile, enlarged for small counts, since few values spread less than many. Null if `count` is too small.
 std::optional<double> noise_of(double minimum, double p95, size_t count);
 
-/// Returns the root of the sum of both squares. For pairs of equal work with ordinary noise, the medians differ by more
-/// in about one case in a thousand.
+/// Returns the root of the sum of both squares. Medians of equal work with ordinary noise differ by more than this in
+/// about one case in a thousand.
 std::optional<double> noise_of_both(const std::optional<double>& a, const std::optional<double>& b);
 
 }  // namespace shvr::report

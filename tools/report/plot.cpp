@@ -23,13 +23,13 @@ constexpr std::array<Color, 7> COLORS{
     {{0, 114, 178}, {230, 159, 0}, {0, 158, 115}, {213, 94, 0}, {204, 121, 167}, {86, 180, 233}, {120, 110, 20}}};
 constexpr int MARKS = 4;  // disc, square, diamond, triangle
 
-/// The drawing interface of a plot; y points down.
+/// Interface for drawing a plot, implemented for SVG and pixels. The y axis points down.
 class Canvas {
 public:
     virtual ~Canvas() = default;
     virtual void line(double x0, double y0, double x1, double y1, double width, Color color) = 0;
     virtual void mark(double x, double y, int kind, double radius, Color color, double opacity) = 0;
-    /// `anchor`: 0 starts at x, 1 is centred, 2 ends there; y is the base line. `upright`: runs upwards.
+    /// `anchor`: x is the begin (0), middle (1) or end (2) of the text; y is the base line. `upright`: runs upwards.
     virtual void text(double x, double y, const std::string& text, int anchor, bool upright = false) = 0;
 };
 
@@ -71,7 +71,7 @@ private:
     }
 };
 
-/// Draws at SCALE times the size and averages, for smooth edges.
+/// Draws at SCALE times the size and then averages, for smooth edges.
 class PixelCanvas final : public Canvas {
 public:
     PixelCanvas(int width, int height)
@@ -107,7 +107,7 @@ public:
                 for (int row = 0; row <= GLYPH_ROWS; ++row) {
                     if (!glyph_has(text[i], column, row)) continue;
                     const double along = double(i) * (GLYPH_COLUMNS + 1) + column - wide, up = GLYPH_ROWS - row;
-                    // A texel of a letter is as wide as a pixel, or slightly wider.
+                    // A letter is drawn with dots that are slightly wider than a pixel.
                     constexpr double TEXEL = 1.25;
                     const double px = upright ? x - TEXEL * up : x + TEXEL * along;
                     const double py = upright ? y - TEXEL * along : y - TEXEL * up;
@@ -162,8 +162,8 @@ private:
     std::vector<uint8_t> pixels_;
 };
 
-/// A logarithmic axis from one tick to another. Both ticks lie slightly inside the frame, so that no mark lies on the
-/// frame. Ticks are powers of 10, and below two decades also 2 and 5 times these.
+/// A logarithmic axis between two ticks. Both ticks lie slightly inside the frame, so that no mark overlaps the frame.
+/// Ticks are powers of 10; axes of less than two decades also have ticks at 2 and 5 times these.
 struct Axis {
     double lower = 0.0, upper = 1.0;  ///< exponents of 10
     double begin = 0.0, end = 1.0;    ///< pixels
@@ -174,7 +174,7 @@ struct Axis {
     }
 };
 
-/// Returns the largest number of the form 1, 2 or 5 times a power of 10 that is smaller by at least a thousandth.
+/// Returns the largest number 1, 2 or 5 times a power of 10 that is smaller than `value` by at least a thousandth.
 double tick_at_most(double value)
 {
     const double power = std::pow(10.0, std::floor(std::log10(value * 0.999)));
@@ -282,7 +282,7 @@ void draw(Canvas& canvas, const Plot& plot)
     const auto color_of = [&](size_t i) { return plot.series[i].is_other ? INK : COLORS[i % COLORS.size()]; };
     for (size_t i = 0; i < plot.series.size(); ++i)
         if (plot.series[i].is_joined) draw_steps(canvas, plot.series[i], x, y, color_of(i));
-    // Draws important marks last: those with a label, and those of the first series on top.
+    // Draws the important marks last, on top: those with a label, and those of the first series.
     for (const bool labelled : {false, true})
         for (size_t i = plot.series.size(); i-- > 0;)
             for (const PlotPoint& point : plot.series[i].points) {

@@ -1,6 +1,6 @@
 #pragma once
-// Log-log scatter plots, as SVG or pixels, drawn by the same code. Families have marks of distinct shapes and colours,
-// distinguishable with any colour vision (Okabe and Ito 2008); a line joins the front; labels. Any thread.
+// Log-log scatter plots with labels, drawn by the same code as SVG or pixels. Series have marks of distinct shapes and
+// colours, distinguishable with any colour vision (Okabe and Ito 2008); a line joins the front. Any thread.
 
 #include <string>
 #include <vector>
@@ -10,21 +10,21 @@
 namespace shvr::report {
 
 struct PlotPoint {
-    double x = 1.0, y = 1.0;  ///< values not above 0 are left out
+    double x = 1.0, y = 1.0;  ///< points with values that are not above 0 are omitted
     std::string label;        ///< next to the mark; empty: none
-    bool on_front = false;    ///< joined by a line; points off the front are paler, unless they have a label
+    bool on_front = false;    ///< joined by a line; points off the front are paler, unless labelled
 };
 
 struct PlotSeries {
     std::string name;
     std::vector<PlotPoint> points;
-    bool is_joined = false;  ///< a line in the series' colour joins its points, all of which are opaque
-    bool is_other = false;   ///< the series with which the others are compared: opaque, in the ink of the axes
+    bool is_joined = false;  ///< the series' points are joined by a line, and are all opaque
+    bool is_other = false;   ///< the series with which the others are compared: opaque, in the axes' colour
 };
 
 struct Plot {
     std::string title, x_label, y_label;
-    std::vector<PlotSeries> series;  ///< the eighth series has the first one's colour, but another mark
+    std::vector<PlotSeries> series;  ///< the eighth series has the colour of the first, but another mark
     int width = 720, height = 480;   ///< pixels
 };
 

@@ -70,7 +70,7 @@ def write_mask(mask, path):
 # ---- Skeletons as traces ---------------------------------------------------------------------------------------------
 
 EVERY = 4      # voxels between nodes along a chain
-PRUNED = 8     # chains with a free end that are shorter, in voxels, are no branches but bumps of the surface
+PRUNED = 8     # voxels: shorter chains with a free end are bumps of the surface, not branches
 
 
 def neighbours_of(voxel, known):
@@ -157,7 +157,7 @@ def write_trace(nodes, edges, size, path):
 
 # ---- Methods ---------------------------------------------------------------------------------------------------------
 
-SIGMAS = (2.0, 3.0, 4.0, 5.0)  # voxels: radii of the section's veins at a side of 256 are 3 to 6
+SIGMAS = (2.0, 3.0, 4.0, 5.0)  # voxels; the veins of a section with a side of 256 have radii of 3 to 6
 
 
 def smoothed(volume):

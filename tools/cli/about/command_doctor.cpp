@@ -1,4 +1,4 @@
-// shvr doctor: the machine's offers and gaps, on one page that a bug report can carry.
+// shvr doctor: reports what the machine offers and lacks, on one page to attach to a bug report.
 
 #include <iomanip>
 #include <iostream>

@@ -19,7 +19,7 @@ namespace shvr::cli {
 
 namespace {
 
-/// Returns a line "KEY=value" of a file, without quotes; empty if there is none.
+/// Returns the value of a line "KEY=value" of a file, without quotes; empty if there is no such line.
 std::string value_in(const char* path, const std::string& key)
 {
     std::ifstream file(path);
@@ -45,7 +45,7 @@ uint64_t processors_allowed()
     return std::thread::hardware_concurrency();
 }
 
-/// The lowest limit of memory of this process's control groups (version 2) and its address space.
+/// Returns the lowest memory limit among this process's control groups (version 2) and its address space.
 std::optional<uint64_t> memory_limit()
 {
     std::optional<uint64_t> least;
@@ -73,7 +73,7 @@ FolderReport report_on_folder(const std::string& use, const std::filesystem::pat
         return report;
     }
     std::error_code error;
-    std::filesystem::path there = folder;  // the nearest folder that exists: the others are made when needed
+    std::filesystem::path there = folder;  // the nearest existing ancestor; missing folders are created when needed
     while (!std::filesystem::exists(there, error) && there != there.parent_path()) there = there.parent_path();
     const bool allowed = ::access(there.c_str(), is_written ? W_OK | X_OK : R_OK | X_OK) == 0;
     const bool is_folder = std::filesystem::is_directory(there, error);

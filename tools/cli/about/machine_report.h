@@ -1,6 +1,6 @@
 #pragma once
-// The report of `shvr doctor`: devices, memory, display, folders, and the packages that bring what is missing. Nothing
-// here fails: a part that cannot be found out says why.
+// The report of `shvr doctor`: devices, memory, display, folders, and the packages that provide what is missing. No
+// function here fails: a part that cannot be determined states the reason.
 
 #include <cstdint>
 #include <optional>
@@ -13,11 +13,11 @@
 
 namespace shvr::cli {
 
-/// A thing that is missing or unusable, its use, and the remedy.
+/// Something that is missing or unusable, its purpose, and the remedy.
 struct Missing {
     std::string what, for_what;
-    std::string package;     ///< package of Debian and Ubuntu that brings it; empty if none does
-    bool is_needed = false;  ///< without it SHVR cannot draw at all
+    std::string package;     ///< package of Debian and Ubuntu that provides it; empty if none does
+    bool is_needed = false;  ///< true: without it, SHVR cannot draw at all
 };
 
 struct FolderReport {
@@ -32,10 +32,10 @@ struct MachineReport {
     std::string system, kernel, build;  ///< release of the distribution, kernel, compiler and build type
     std::vector<gpu::DeviceReport> devices;
     std::optional<size_t> chosen;         ///< index of the device that SHVR uses by default
-    std::string why_no_device;            ///< why there is none to choose; empty if there is
+    std::string why_no_device;            ///< reason why no device can be used; empty if one can
     uint64_t processors = 0;              ///< that this process may use
     uint64_t memory_bytes = 0;            ///< memory of the machine
-    std::optional<uint64_t> limit_bytes;  ///< of this process's control group or address space, where it is lower
+    std::optional<uint64_t> limit_bytes;  ///< memory limit of this process's control group or address space, if lower
     ui::DisplayReport display;
     std::string display_names;  ///< variables of the environment, "DISPLAY=:0"
     std::vector<DeviceListing> styluses;

@@ -43,7 +43,7 @@ std::vector<const CLI::Option*> options_of(const CLI::App& app, bool positional)
     });
 }
 
-/// "INT in [0 - 23]" and "files|journal:{files,journal}" without what follows a colon.
+/// Returns the kind of value: "INT in [0 - 23]"; of "files|journal:{files,journal}", only the part before the colon.
 std::string value_name(const CLI::Option& option)
 {
     if (option.get_expected_max() == 0 || option.get_type_size() == 0) return {};
@@ -51,7 +51,7 @@ std::string value_name(const CLI::Option& option)
     return name.substr(0, name.find(":{"));
 }
 
-/// Values that an option is limited to; empty if any is possible.
+/// Returns the values that an option accepts; empty if it accepts any.
 std::vector<std::string> choices_of(const CLI::Option& option)
 {
     const std::string name = option.get_type_name();
@@ -77,7 +77,7 @@ std::vector<std::string> names_of(const CLI::Option& option)
 
 // ---- Manual pages ---------------------------------------------------------------------------------------------------
 
-/// Text of a page: a hyphen of the program's is a minus, and neither a leading dot nor a quote starts a macro.
+/// Escapes a text for troff: hyphens become minus signs, and leading dots and quotes do not start macros.
 std::string troff(std::string_view text)
 {
     std::string escaped;
@@ -109,7 +109,7 @@ std::string page_options(const CLI::App& app)
     return text;
 }
 
-/// The footer's paragraphs; lines that begin with a space, which are examples, are kept as they are.
+/// Formats the footer's paragraphs. Lines that begin with a space are examples, and stay as they are.
 std::string page_footer(const std::string& footer)
 {
     std::string text;
@@ -150,7 +150,7 @@ ManualFile page_of(const Entry& entry, const std::vector<Entry>& entries, const 
     for (const Entry& other : entries)
         if (other.words.size() <= 2 && other.words != entry.words)
             others += (others.empty() ? "" : ",\n") + (".BR " + troff(other.joined('-')) + " (1)");
-    // A macro ends with its line: the comma belongs to its arguments.
+    // A troff macro takes the rest of its line as arguments, so the comma has to be one of its arguments.
     for (size_t at = 0; (at = others.find(" (1),\n", at)) != others.npos; ++at) others.replace(at, 6, " (1),\n");
     return {"man/man1/" + name + ".1", text + others + "\n"};
 }
@@ -204,7 +204,7 @@ ManualFile bash_of(const std::vector<Entry>& entries)
     return {"bash-completion/completions/shvr", text};
 }
 
-/// A description in a specification of zsh's _arguments, whose brackets and colons are special.
+/// Escapes a description for zsh's _arguments, in which brackets and colons are special.
 std::string zsh_text(std::string_view text)
 {
     std::string escaped;

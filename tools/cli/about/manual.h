@@ -1,5 +1,5 @@
 #pragma once
-// Manual pages and shell completions, from the tables of options that --help prints too.
+// Manual pages and shell completions, generated from the same tables of options as --help.
 
 #include <string>
 #include <vector>
@@ -12,8 +12,8 @@ struct ManualFile {
     std::string path;  ///< below the folder for shared data: "man/man1/shvr.1"
     std::string text;
 };
-/// A page for the program and for each command and command of a command, in the macros of man(7), and a completion each
-/// for bash, zsh and fish. Equal programs give equal files.
+/// Returns a manual page (man(7) macros) for the program and for each command and sub-command, and completions for
+/// bash, zsh and fish. The same program always gives the same files.
 std::vector<ManualFile> manual_of(const CLI::App& program, const std::string& version);
 
 }  // namespace shvr::cli

@@ -17,7 +17,7 @@ namespace {
 constexpr const char* PASS_COLORS[] = {"#0072b2", "#e69f00", "#009e73", "#d55e00", "#cc79a7", "#56b4e9", "#8a7d18"};
 constexpr double HEIGHT_OF_LINE = 70.0, WIDTH_OF_LETTER = 7.0;
 
-/// Returns the distance between ticks: 1, 2 or 5 times a power of ten, chosen so that about ten ticks fit.
+/// Returns the distance between ticks: 1, 2 or 5 times a power of ten, so that about ten ticks fit into `length`.
 double tick_of(double length)
 {
     const double least = length / 10.0, power = std::pow(10.0, std::floor(std::log10(least)));

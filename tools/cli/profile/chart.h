@@ -1,5 +1,5 @@
 #pragma once
-// Bars along an axis of milliseconds, as SVG inside a page, which supplies the colours of text and lines (html.cpp).
+// Draws bars along an axis of milliseconds as SVG for a page, which defines the colours of text and lines (html.cpp).
 
 #include <cstdint>
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace shvr::cli {
 
-/// A colour per pass, the same everywhere. Up to seven passes have seven colours, distinguishable with any colour
-/// vision (Okabe and Ito 2008); with more passes, at least those that ran one after the other differ.
+/// A colour per pass, the same in every chart. Up to seven passes get seven colours, distinguishable with any colour
+/// vision (Okabe and Ito 2008). With more passes, at least consecutive passes differ.
 class PassColors {
 public:
-    /// `names`: the names of passes, each once, in the order in which the passes first ran.
+    /// `names`: unique names of passes, in the order in which the passes first ran.
     explicit PassColors(std::vector<std::string> names) : names_(std::move(names)) {}
     std::string of(const std::string& name) const;
 
@@ -20,12 +20,12 @@ private:
     std::vector<std::string> names_;
 };
 
-/// 1234567 -> "1 234 567", with narrow spaces.
+/// Groups digits with narrow spaces: 1234567 -> "1 234 567".
 std::string grouped_text(int64_t number);
 /// "3.4 MiB"
 std::string bytes_text(uint64_t bytes);
 
-/// The style for the page that contains a chart.
+/// CSS that a page with charts must contain.
 inline constexpr const char* CHART_STYLE = R"(.chart{font:12px sans-serif;border:1px solid var(--line)}
 .chart text{fill:var(--ink)}.chart text.on{pointer-events:none}.chart line{stroke:var(--line)}
 .chart rect:hover{stroke:var(--ink);stroke-width:2}
@@ -39,13 +39,13 @@ public:
     Chart(double left, double end_ms);
     /// Starts a row below all previous ones.
     void begin_row(const std::string& name);
-    /// Adds a bar to the last row; further lanes are below lane 0. `tooltip` describes the bar; `on_it` is written on
-    /// it if it fits.
+    /// Adds a bar to the last row, in lane `lane` (0 is the topmost). `tooltip` describes the bar; `on_it` is drawn on
+    /// the bar if it fits.
     void bar(double begin_ms, double length_ms, const std::string& color, const std::string& tooltip,
              const std::string& on_it = {}, size_t lane = 0);
-    /// Adds a line of values from 0 to the maximum, drawn as steps: each value holds from its time on.
+    /// Adds a step curve between 0 and the maximum: each value holds from its time to the next.
     void line(const std::string& name, const std::vector<std::pair<double, double>>& values, const std::string& most);
-    /// Returns the chart with an axis whose ticks are at least `least_tick` apart.
+    /// Returns the chart as SVG, with an axis whose ticks are at least `least_tick` apart.
     std::string svg(const std::string& unit = "ms", double least_tick = 0.0) const;
 
 private:

@@ -1,4 +1,4 @@
-// shvr profile: the time of a frame, pass by pass; shvr profile diff: the differences between two profiles.
+// shvr profile: measures the time of a frame, pass by pass; shvr profile diff: compares two profiles.
 
 #include <chrono>
 #include <iostream>
@@ -13,14 +13,14 @@ namespace shvr::cli {
 namespace {
 
 constexpr int64_t MAX_PROFILE_BYTES = int64_t(64) << 20;
-constexpr int DEEPEST_PROFILE = 16;  // our profiles nest 4 deep; a level costs far more memory than 2 characters
+constexpr int DEEPEST_PROFILE = 16;  // SHVR's profiles nest 4 deep; each level costs far more memory than 2 characters
 
 struct ProfileCommandOptions {
     Common common;
     std::string input, size, camera, trace, csv, graph, html, script;
     int frames = 20;
     int replays = 1;  ///< repetitions of the script
-    int warmup = 3;   ///< frames that are not counted: they compile kernels and wake up the device
+    int warmup = 3;   ///< frames not measured: they compile kernels and wake up the device
     bool serialize = false;
     std::string a, b;  ///< files of diff
 };
@@ -32,7 +32,7 @@ void print_text(const std::string& text)
     if (!std::cout) fail("standard output: cannot be written");
 }
 
-/// Refuses frames that lack something, since they take less time than complete ones.
+/// Refuses incomplete frames, since they take less time than complete ones.
 void expect_complete(const Picture& picture, const Opened& opened, const ProfileCommandOptions& options)
 {
     if (picture.complete || *options.common.allows_incomplete) return;
@@ -95,7 +95,7 @@ Profile measure_frames(const ProfileCommandOptions& options, Opened& opened, Lon
     profile.warnings.insert(profile.warnings.begin(), opened.warnings.begin(), opened.warnings.end());
     profile.device_budget = renderer.memory().device_budget();
     profile.host_budget = renderer.host_budget();
-    // Counting costs time, so work is counted in a frame of its own.
+    // Counting work costs time, so it is done in a separate frame.
     profile.counted =
         renderer.render(opened.session, camera, {.probe = probe, .count_work = true, .statistics = true}).passes;
     return profile;

@@ -28,7 +28,7 @@ const Json* find_pass(const Json& passes, const std::string& name)
     return nullptr;
 }
 
-/// Returns the number of measurements; older profiles do not state it, but have many.
+/// Returns the number of measurements. Older profiles do not state it; they have many measurements.
 size_t count_of(const Json& object, const char* key)
 {
     const auto count = object.find(key);
@@ -36,7 +36,7 @@ size_t count_of(const Json& object, const char* key)
                                                                 : std::numeric_limits<size_t>::max();
 }
 
-/// Returns the times that a pass takes on the device or, with the prefix "record_", the times to record it.
+/// Returns a pass's times on the device or, with the prefix "record_", the host's times for recording the pass.
 std::optional<Timing> timing_of_pass(const Json* pass, const std::string& prefix, const std::string& file)
 {
     return pass ? timing_of(*pass, prefix, count_of(*pass, "count"), file) : std::nullopt;
@@ -112,7 +112,7 @@ Json compared_counts(const Json& a, const Json& b)
     for (const auto& [name, value] : a.items()) {
         const auto other = b.find(name);
         if (other == b.end() || !value.is_number_integer() || !other->is_number_integer()) continue;
-        // Unsigned, because the difference of arbitrary numbers may exceed int64_t.
+        // Subtracted as unsigned numbers, since the difference of arbitrary numbers may overflow int64_t.
         const auto delta = int64_t(other->get<uint64_t>() - value.get<uint64_t>());
         rows.push_back({{"name", name}, {"a", value}, {"b", *other}, {"delta", delta}});
     }

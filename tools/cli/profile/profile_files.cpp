@@ -94,7 +94,7 @@ void add_frame(Json& events, const Profile& profile, const ProfiledFrame& frame,
                       {"args", {{"bytes", frame.device_bytes}}}});
 }
 
-/// Returns a field of a CSV table, quoted where RFC 4180 requires it.
+/// Returns a field of a CSV table, in quotes where RFC 4180 requires them.
 std::string field(const std::string& text)
 {
     if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
@@ -141,7 +141,7 @@ std::vector<std::pair<double, double>> recorded_in(const Profile& profile, const
 std::vector<PlacedPass> placed_passes(const Profile& profile)
 {
     std::vector<PlacedPass> placed;
-    std::vector<double> free_from;  // for each lane, the time from which it is free: its spans must not overlap
+    std::vector<double> free_from;  // time from which each lane is free, since spans of a lane must not overlap
     for (size_t index = 0; index < profile.frames.size(); ++index) {
         const ProfiledFrame& frame = profile.frames[index];
         const double busy_until = free_from.empty() ? 0.0 : *std::max_element(free_from.begin(), free_from.end());

@@ -1,4 +1,4 @@
-// The memory of a frame, resource by resource: how long each is needed, and how much sharing saves.
+// The memory of a frame, by resource: when each resource is needed, and how much memory sharing would save.
 
 #include <algorithm>
 #include <numeric>
@@ -9,7 +9,7 @@ namespace shvr::cli {
 
 namespace {
 
-/// A resource of the frame, and the first and last step that needs its bytes.
+/// A resource of the frame, and the range of steps that need its bytes.
 struct Need {
     size_t resource = 0;
     uint64_t bytes = 0;
@@ -18,7 +18,7 @@ struct Need {
     bool overlaps(const Need& other) const { return first_step <= other.last_step && other.first_step <= last_step; }
 };
 
-/// Returns the needs in order of declaration, without resources that no kept pass uses.
+/// Returns the needs in order of the resources' declaration, without resources that no remaining pass uses.
 std::vector<Need> needs_of(const FrameGraph& graph, const CompiledGraph& compiled)
 {
     std::vector<std::optional<Need>> found(graph.resources().size());
@@ -26,7 +26,7 @@ std::vector<Need> needs_of(const FrameGraph& graph, const CompiledGraph& compile
         for (const Binding& binding : graph.passes()[compiled.steps[step].pass].bindings) {
             const FrameGraph::ResourceData& data = graph.resources()[binding.resource];
             std::optional<Need>& need = found[binding.resource];
-            // The host fills an upload before the first step, so its bytes are needed from there on.
+            // The host fills an upload before the first step, so an upload's bytes are needed from step 0 on.
             if (!need) need = Need{binding.resource, data.desc.bytes, data.contents.empty() ? step : 0, step};
             need->last_step = step;
         }
@@ -36,11 +36,11 @@ std::vector<Need> needs_of(const FrameGraph& graph, const CompiledGraph& compile
     return needs;
 }
 
-/// Returns the most bytes that any one step needs: a lower bound for the memory of any sharing.
+/// Returns the maximum over all steps of the bytes needed: a lower bound for the memory with any kind of sharing.
 uint64_t most_at_once(const std::vector<Need>& needs)
 {
     uint64_t most = 0;
-    for (const Need& at : needs) {  // the sum grows only at the first steps of resources
+    for (const Need& at : needs) {  // the sum can only grow at a step where a resource is first needed
         uint64_t sum = 0;
         for (const Need& need : needs)
             if (need.first_step <= at.first_step && at.first_step <= need.last_step) sum += need.bytes;
@@ -49,7 +49,7 @@ uint64_t most_at_once(const std::vector<Need>& needs)
     return most;
 }
 
-/// Returns the size of one block that holds all resources: largest first, each at the lowest free offset.
+/// Returns the size of a block that holds all resources, placed largest first, each at the lowest offset that is free.
 uint64_t packed_bytes(std::vector<Need> needs)
 {
     std::stable_sort(needs.begin(), needs.end(), [](const Need& a, const Need& b) { return a.bytes > b.bytes; });

@@ -1,4 +1,4 @@
-// The page of a profile: its frames and passes along one axis of time, memory below it, and the tables.
+// The page of a profile: frames and passes along an axis of time, memory below them, and the tables.
 
 #include <algorithm>
 #include <cmath>
@@ -37,7 +37,7 @@ PassColors colors_of(const Json& summary)
     return PassColors(names);
 }
 
-/// Adds the frames [first, end) to an axis that starts at `begin_ms` on the frames' clock.
+/// Adds the frames [first, end) to a chart whose axis begins at the time `begin_ms` of the frames' clock.
 void add_frames(Chart& chart, const Profile& profile, const PassColors& colors, size_t first, size_t end,
                 double begin_ms)
 {
@@ -96,7 +96,7 @@ std::string median_frame(const Profile& profile, const PassColors& colors)
     return sentence("<h2>The median frame: frame ", middle, "</h2>\n", chart.svg());
 }
 
-/// Returns the text of a table cell: "-" for null; integers have their digits in groups.
+/// Returns the text of a table cell: "-" for null; the digits of integers are grouped.
 std::string cell_of(const Json& value)
 {
     return value.is_string()           ? escaped(value.get<std::string>())
@@ -132,7 +132,7 @@ std::string passes_table(const Json& summary, const PassColors& colors)
     return "<table>\n" + rows + "</table>\n";
 }
 
-/// Returns the table of one-time work: uploads, the leap grid, ambient occlusion.
+/// Returns the table of work done once, in the first frame: uploads, the leap grid, ambient occlusion.
 std::string first_frame_table(const Json& summary)
 {
     std::string rows = "<tr><th>pass</th><th>ms</th></tr>\n";
@@ -151,7 +151,7 @@ std::string pairs_table(const Json& object)
     return "<table>\n" + rows + "</table>\n";
 }
 
-/// Draws one bar per resource, from its first step to its last.
+/// Draws a bar for each resource, from the first to the last step that uses the resource.
 std::string lifetimes_of(const Json& memory)
 {
     const double steps = memory["steps"];

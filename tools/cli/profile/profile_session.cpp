@@ -12,7 +12,7 @@ namespace shvr::cli {
 
 namespace {
 
-/// Values of counters; an action's share is the difference between two of these.
+/// Values of counters at one time. An action's share is the difference between the values after and before it.
 struct SessionCounts {
     uint64_t submits = 0, allocations = 0, uploads = 0, evictions = 0;
     int64_t painted = 0;
@@ -34,8 +34,8 @@ bool shows_at_least_a_sketch(ui::Workbench& bench)
     return true;
 }
 
-/// Runs frames until nothing is left to do, and records when each stage was reached. `poll` may throw. A failure ends
-/// it, since the workbench would retry forever.
+/// Runs frames until no work is left, and records when each stage was reached. `poll` may throw. An error message ends
+/// the loop, since the workbench would retry forever.
 void settle(ui::Workbench& bench, ProfiledAction& action, const std::function<double()>& now_ms,
             const std::function<void()>& poll)
 {
@@ -65,7 +65,7 @@ Renderer::Options renderer_options(const Common& common)
             .threads = common.threads};
 }
 
-/// A device and a workbench with the work open, as one replay needs them.
+/// A device, and a workbench with the input opened, for one replay.
 class Stage {
 public:
     Stage(const std::filesystem::path& input, const Common& common)
@@ -77,17 +77,17 @@ public:
                  bench.document().outside.empty() ? "; expected it to be closed there first"
                                                   : "; --outside writes there");
     }
-    /// Runs until the picture is complete, so that this work does not count for the first action.
+    /// Draws until the picture is complete, so that this work is not attributed to the first action.
     void set_up(const std::function<void()>& poll)
     {
         bench.set_pixels(bench.document().session.render.size);
-        bench.set_hand_down(true);  // steps of settings stay open until the script ends them
+        bench.set_hand_down(true);  // setting changes stay in one history step until the script ends it
         ProfiledAction opening;
         bench.advance();
         settle(
             bench, opening, [] { return 0.0; }, poll);
     }
-    /// Writes the actions to the journal, and fails if a stroke was not painted or the device was misused.
+    /// Writes all actions to the journal. Fails if a stroke was not painted or the validation layer reported errors.
     void finish(const std::string& script)
     {
         const std::string unpainted = bench.finish_stroke();
@@ -124,7 +124,7 @@ ProfiledAction profiled(Stage& stage, int line, const ui::Action& action, const 
     return one;
 }
 
-/// `tell` receives the completed fraction of this replay; it and `poll` may throw. `of_copy`: the work is a copy,
+/// Replays the script. `tell` receives the completed fraction; it and `poll` may throw. `of_copy`: the input is a copy,
 /// without its earlier history.
 Replayed replay(Stage& stage, const std::string& script, const Lines& lines, bool of_copy,
                 const std::function<void(double)>& tell, const std::function<void()>& poll)
@@ -155,7 +155,7 @@ Replayed replay(Stage& stage, const std::string& script, const Lines& lines, boo
     return done;
 }
 
-/// Copies of the work's files in their present state, one set per replay.
+/// Copies the input's files in their present state, once for each replay.
 std::vector<std::filesystem::path> copies_of(const std::string& input, const Common& common,
                                              const std::filesystem::path& folder, int count)
 {
@@ -187,7 +187,7 @@ SessionProfile profile_session(const std::string& input, const std::string& scri
         profile.replays.push_back(replay(stage, script, lines, of_copy, tell, [&] { work.stop_if_asked(); }));
     };
     static_cast<void>(work.begin("opening " + input));
-    // Copies first: a script that fails has then not changed the work itself.
+    // The copies come first: a script that fails on one of them has not changed the input itself.
     const TemporaryFolder folder("shvr-replays");
     if (replays > 1)
         for (const std::filesystem::path& copy : copies_of(input, common, folder.path, replays - 1)) {

@@ -1,6 +1,6 @@
 #pragma once
-// `shvr profile --script`: a session of work, action by action, on the workbench that the window uses; repeated if the
-// noise is to be measured.
+// `shvr profile --script`: measures a session of work, action by action, on the workbench that the window uses. The
+// session can be repeated to measure the noise.
 
 #include "tools/cli/profile/profile_report.h"
 
@@ -9,16 +9,16 @@ namespace shvr::cli {
 struct ProfiledAction {
     int line = 0;                         ///< line in the script
     std::string action;                   ///< its key "op"
-    double begin_ms = 0.0, end_ms = 0.0;  ///< time on the host's clock, from the first action
-    // Times from the beginning of the action; each is null if its event did not happen before the next action.
-    std::optional<double> paint_ms;       ///< time until the voxels that the action changed are painted; null: their
+    double begin_ms = 0.0, end_ms = 0.0;  ///< begin and end on the host's clock, since the first action
+    // Times since the beginning of the action; null if the event did not happen before the next action.
+    std::optional<double> paint_ms;       ///< time until the voxels that the action changes are painted; null: their
                                           ///< number is unchanged
-    std::optional<double> sketch_ms;      ///< time until every pane shows at least a sketch of the result
+    std::optional<double> sketch_ms;      ///< time until every pane shows the result at least as a sketch
     std::optional<double> sharp_ms;       ///< time until every pane shows the result sharp
     uint64_t submits = 0;                 ///< submissions of the picture
     uint64_t allocations = 0;             ///< allocations of device memory
     uint64_t uploads = 0, evictions = 0;  ///< paged bricks only
-    int64_t voxels_painted = 0;           ///< increase of the number of voxels in groups; below 0: decrease
+    int64_t voxels_painted = 0;           ///< change of the number of voxels in groups; may be negative
     uint64_t device_bytes = 0;
 };
 using Replayed = std::vector<ProfiledAction>;  ///< the whole script, done once
@@ -26,20 +26,20 @@ using Replayed = std::vector<ProfiledAction>;  ///< the whole script, done once
 struct SessionProfile {
     std::string input, script, device, driver;
     glm::uvec2 size{0};
-    std::vector<Replayed> replays;  ///< at least one; all have the same actions; the last one ran on the input itself
+    std::vector<Replayed> replays;  ///< at least one; all have the same actions; the last used the input itself
     Json bytes;
     uint64_t device_budget = 0, host_budget = 0;
 };
 
-/// Labels of the times of the whole script, in the section "whole".
+/// Keys and labels of the total times of the script, in the section "whole".
 inline constexpr std::pair<const char*, const char*> WHOLE_SCRIPT[] = {{"paint_ms", "to paint, all actions"},
                                                                        {"sketch_ms", "to sketch, all actions"},
                                                                        {"sharp_ms", "to sharp, all actions"},
                                                                        {"session_ms", "from begin to end"}};
 
-/// Executes the script, as `shvr annotate --actions` does: its painting is
-/// kept in the journal. All `replays` but the last run on copies of the work,
-/// so that each begins with the same state. Each has a device of its own.
+/// Executes the script, as `shvr annotate --actions` does: its painting is stored in the journal. All of the `replays`
+/// except the last one run on copies of the input, so that each begins with the same state. Each has a device of its
+/// own.
 SessionProfile profile_session(const std::string& input, const std::string& script, int replays, const Common& common);
 
 /// README.md lists the keys.

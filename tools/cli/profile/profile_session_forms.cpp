@@ -1,4 +1,4 @@
-// The profile of a session of work as JSON, text, table and trace.
+// Formats the profile of a session of work as JSON, text, table and trace.
 
 #include <algorithm>
 #include <sstream>
@@ -60,7 +60,7 @@ constexpr std::pair<const char*, std::optional<double> ProfiledAction::*> TIMES_
     {"sketch_ms", &ProfiledAction::sketch_ms},
     {"sharp_ms", &ProfiledAction::sharp_ms}};
 
-/// Summarises an action over all replays: only the times that every replay has.
+/// Summarises an action over all replays, for those of its times that every replay has.
 Json over_replays(const SessionProfile& profile, size_t index)
 {
     Json spreads = Json::object();
@@ -73,7 +73,7 @@ Json over_replays(const SessionProfile& profile, size_t index)
     return spreads;
 }
 
-/// Summarises the whole script over all replays: total times of its actions, and its duration.
+/// Summarises the whole script over all replays: sums of its actions' times, and its duration.
 Json whole_of(const SessionProfile& profile)
 {
     Json whole = Json::object();
@@ -96,7 +96,7 @@ Json whole_of(const SessionProfile& profile)
 
 Json summary_of(const SessionProfile& profile)
 {
-    // Counts and positions in time come from the last replay, which ran on the input; times are medians over all.
+    // Counts and time stamps come from the last replay, which ran on the input itself; durations are medians over all.
     const Replayed& own = profile.replays.back();
     Json actions = Json::array();
     for (size_t i = 0; i < own.size(); ++i) {

@@ -1,4 +1,4 @@
-// The page of a session of work: its actions and the memory along one axis of time, and the tables.
+// The page of a session of work: actions and memory along a common axis of time, and the tables.
 
 #include <algorithm>
 
@@ -13,7 +13,7 @@ namespace {
 constexpr const char *SKETCH_COLOR = "#e69f00", *SHARP_COLOR = "#56b4e9", *PAINT_COLOR = "#cc79a7",
                      *REST_COLOR = "#9aa0a6";
 
-/// Returns "12.3 (11.9 to 14.0)": a median, and the spread if there is more than one replay.
+/// Returns a median with its spread, "12.3 (11.9 to 14.0)"; without the spread if there is only one replay.
 std::string time_cell(const Json& action, const char* key, size_t replays)
 {
     const Json& spread = action["over_replays"][key];
@@ -59,7 +59,7 @@ std::string whole_table(const Json& summary)
     return "<table>\n" + rows + "</table>\n";
 }
 
-/// Draws the chart of the replay that ran on the input itself.
+/// Draws a chart of the replay that ran on the input itself.
 std::string chart_of(const Replayed& replayed)
 {
     Chart chart(190.0, replayed.back().end_ms);

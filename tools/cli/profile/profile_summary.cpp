@@ -9,7 +9,7 @@ namespace shvr::cli {
 
 namespace {
 
-/// All reports of passes with one name, frame by frame; a frame that did not run such a pass has no report.
+/// All reports of the passes that share a name, frame by frame. Frames in which no such pass ran have no report.
 struct PassHistory {
     std::vector<double> times, records;
     size_t count = 0;
@@ -57,7 +57,7 @@ Json pass_summary(const PassHistory& history)
             {"barrier", history.last.barrier}};
 }
 
-/// Returns each frame's sum over its passes; frames without times are left out.
+/// Returns, for each frame, the sum over its passes. Frames without times are omitted.
 std::vector<double> sums_of(const std::vector<ProfiledFrame>& frames)
 {
     std::vector<double> sums;
@@ -70,7 +70,7 @@ std::vector<double> sums_of(const std::vector<ProfiledFrame>& frames)
     return sums;
 }
 
-/// Returns invocations by kernel pass; null if the device does not report them.
+/// Returns the invocations of each kernel pass; null if the device does not report them.
 Json invocations_of(const std::vector<gpu::PassReport>& passes)
 {
     Json invocations = Json::object();
