@@ -6,7 +6,7 @@ namespace shvr {
 
 namespace {
 
-/// The part of the document that a kind of change applies to.
+/// Returns the part of the document that a kind of change applies to.
 Mask& part_for(Document& document, const MaskBrickChange&)
 {
     return document.mask;
@@ -29,7 +29,7 @@ Direction opposite(Direction direction)
     return direction == Direction::forwards ? Direction::backwards : Direction::forwards;
 }
 
-/// The change to apply as number i: counted from the front if forwards, from the back if backwards.
+/// The change to apply as number i: counted from the front if forwards, from the end if backwards.
 const Change& in_order(std::span<const Change> changes, size_t i, Direction direction)
 {
     return direction == Direction::forwards ? changes[i] : changes[changes.size() - 1 - i];
@@ -50,8 +50,8 @@ void apply(Document& document, const Change& change, Direction direction)
 
 void apply_if_it_fits(Document& document, std::span<const Change> changes, Direction direction)
 {
-    // Selection and settings records are applied without comparing the old value, so applying them backwards may not
-    // restore that value. Copies are kept to restore it.
+    // Selection and settings records are applied without comparing old values, so applying such a record backwards may
+    // not restore the value before. Therefore both are copied here.
     const TraceSelection selection = document.trace.selection();
     const Settings settings = document.settings;
     for (size_t i = 0; i < changes.size(); ++i) {

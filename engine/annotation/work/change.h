@@ -1,9 +1,9 @@
 #pragma once
-// Everything that is annotated, and the records through which it changes. Records hold exact states before and after,
-// so undo applies the same record backwards. A new kind of annotation is one more alternative of `Change`; the compiler
-// then reports every place that does not handle it yet.
-//
-// Not thread safe: the main thread owns a document.
+// The annotated document, and the records through which it changes.
+// Records hold exact states before and after, so undo applies the same
+// record backwards. A new kind of annotation adds an alternative to
+// `Change`; the compiler then reports all code that does not handle it
+// yet.
 
 #include <cstdint>
 #include <iterator>
@@ -29,16 +29,16 @@ struct Document {
 
 using Change = std::variant<MaskBrickChange, TraceChange, DensityBrickChange, SettingChange>;
 
-/// A visitor of changes, made of one function for each kind: std::visit(ByKind{...}, change). Does not compile if a
-/// kind is missing.
+/// A visitor of changes with one function for each kind: std::visit(ByKind{...}, change). Does not compile if the
+/// function for a kind is missing.
 template <class... Cases>
 struct ByKind : Cases... {
     using Cases::operator()...;
 };
 template <class... Cases>
-ByKind(Cases...) -> ByKind<Cases...>;  // clang 16 does not deduce aggregates by itself
+ByKind(Cases...) -> ByKind<Cases...>;  // clang 16 needs this guide to deduce an aggregate's arguments
 
-/// Converts records of one kind to the changes of a command.
+/// Converts records of one kind to changes, for a command.
 template <class Record>
 std::vector<Change> as_changes(std::vector<Record> records)
 {
@@ -50,10 +50,10 @@ struct Command {
     std::vector<Change> changes;
 };
 
-/// Applies a change; one that does not fit is a bug of ours (SHVR_CHECK).
+/// Applies a change. A change that does not fit is a bug (SHVR_CHECK).
 void apply(Document& document, const Change& change, Direction direction);
-/// Applies all changes in order or, if backwards, in reverse order. For records from files: if one of them does not
-/// fit, fails with the reason and leaves the document unchanged.
+/// Applies all changes in order or, if backwards, in reverse order. For records from files: if one of the records does
+/// not fit, fails with the reason and leaves the document unchanged.
 void apply_if_it_fits(Document& document, std::span<const Change> changes, Direction direction);
 /// Their approximate memory use.
 uint64_t memory_of(std::span<const Change> changes);

@@ -114,7 +114,7 @@ void History::bring(Entry& entry)
 
 void History::shrink(uint64_t max_bytes, RecordNumber durable)
 {
-    // Keeps the last command: it may still be extended, and the caller may still read it.
+    // Keeps the last command, because it may still be extended, and callers may still hold a pointer to it.
     for (; memory_ > max_bytes && dropped_ + 1 < done_; ++dropped_) {
         Entry& entry = commands_[dropped_];
         if (entry.records.back() == 0 || entry.records.back() > durable) return;

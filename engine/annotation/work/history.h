@@ -1,10 +1,10 @@
 #pragma once
-// One history for everything the user does. Undo and redo are one loop over the records of a command and independent of
-// tools: a new tool makes new command contents, never new undo code.
+// One history for everything the user does. Undo and redo are one loop over the records of
+// a command, whatever made them: a new tool needs new command contents, but no new undo
+// code.
 //
-// Commands that the journal contains can be dropped from memory, oldest first; undoing one fetches it again.
-//
-// Not thread safe: the main thread owns it.
+// Commands that are in the journal can be dropped from memory, oldest first; undoing a
+// dropped command fetches it again.
 
 #include <functional>
 
@@ -17,21 +17,21 @@ using RecordNumber = uint64_t;
 
 class History {
 public:
-    /// Reads a record's content from the journal; fails if it cannot be read.
+    /// A function that reads a record's content from the journal, and fails if that is impossible.
     using Fetch = std::function<std::vector<Change>(RecordNumber)>;
 
-    /// Applies the command and records it; drops commands that were undone. Returns the command, valid until the
-    /// history changes; null if the command has no changes and so is not recorded. `record`: its number in the journal.
+    /// Applies the command and records it; drops commands that were undone. Returns the command (valid until the
+    /// history changes), or null without recording if the command has no changes. `record`: its number in the journal.
     const Command* perform(Document& document, Command command, RecordNumber record = 0);
-    /// Applies `changes` and adds them to the last command, for instance when a stroke continues. Nothing may have been
-    /// undone since that command.
+    /// Applies `changes` and adds them to the last command, for instance when a stroke continues. The last command must
+    /// not have been undone.
     void extend(Document& document, std::vector<Change> changes, RecordNumber record = 0);
-    /// Return the command that was undone or redone; null if there is none. If the command was dropped and cannot be
-    /// fetched or does not fit, fail and change nothing.
+    /// Return the command that was undone or redone; null if there is none. Fail, without any change, if the command
+    /// was dropped and cannot be fetched, or does not fit.
     const Command* undo(Document& document);
     const Command* redo(Document& document);
 
-    /// Replay perform(), extend(), undo() and redo() for a document in its final state, so that no changes are needed.
+    /// Replay perform(), extend(), undo() and redo() without a document, whose state is final already.
     void note(std::string label, RecordNumber record);
     void note_extension(RecordNumber record);
     void note_undo();
@@ -40,18 +40,18 @@ public:
     size_t undoable() const { return done_; }
     size_t redoable() const { return commands_.size() - done_; }
 
-    /// The label of a step; steps count from 0, the oldest, to undoable() + redoable() - 1. Always in memory.
+    /// The label of a step, also of a dropped one. Steps count from 0 (the oldest) to undoable() + redoable() - 1.
     const std::string& label_of(size_t step) const { return commands_[step].command.label; }
-    /// The step's first record in the journal; 0: it has none.
+    /// Number of the step's first record in the journal; 0 if it has no record.
     RecordNumber record_of(size_t step) const { return commands_[step].records.front(); }
-    /// Passes the changes of a step to `visit`. Fetches the changes if they were dropped, and fails if that is
-    /// impossible. The span is valid only during the call.
+    /// Passes the changes of a step to `visit`; the span is valid only during the call. If the changes were dropped,
+    /// fetches them, and fails if that is impossible.
     void look_at(size_t step, const std::function<void(std::span<const Change>)>& visit) const;
 
     void fetch_from(Fetch fetch) { fetch_ = std::move(fetch); }
     uint64_t memory_bytes() const { return memory_; }
-    /// Drops the changes of the oldest commands until at most `max_bytes` are left. Only drops commands whose records
-    /// are on disk, that is, up to the record `durable`.
+    /// Drops the changes of the oldest commands from memory until at most `max_bytes` are left. Only drops commands
+    /// whose records are on disk: those up to the record `durable`.
     void shrink(uint64_t max_bytes, RecordNumber durable);
 
 private:

@@ -54,7 +54,7 @@ int sync(int file)
                                 before.file_bytes, " bytes: open it again"));
 }
 
-/// Opens and locks the file, which must be as it was when read; creates the file if there was none.
+/// Opens and locks the file, which must not have changed since it was read. Creates the file if there was none.
 FileDescriptor opened(const fs::path& path, const JournalScan& before)
 {
     const bool was_there = before.inode != 0;
@@ -87,7 +87,7 @@ void copy(const FileDescriptor& file, const fs::path& path, uint64_t at, uint64_
     }
 }
 
-/// Path of the first of .rest1, .rest2, ... that does not exist.
+/// The first of the paths .rest1, .rest2, ... that does not exist.
 fs::path free_rest(const fs::path& path)
 {
     for (int number = 1;; ++number) {
@@ -126,7 +126,7 @@ Journal::Journal(const fs::path& path, JournalScan before, std::shared_ptr<const
     records_ = std::move(before.records);
     last_ = records_.size();
     try {
-        // Checked only now: a process that claims the journal after this finds this file, and leaves it alone.
+        // Checked after opening the file: a process that claims the journal from now on finds this file and leaves it.
         expect_hold(before);
         if (end_ == 0 || end_ < before.file_bytes || !before.head.empty()) begin(free_rest(path), before.head);
         if (!own.empty()) put_in_place(own, before);
@@ -152,7 +152,7 @@ void Journal::put_in_place(const fs::path& own, const JournalScan& before)
         switch (put_at_free(own, path_)) {
             case Renaming::done:
                 sync_folder(path_);
-                // Checked again: a process that has claimed the journal by now did not find this file.
+                // Checked again, because a process that claimed the journal before this moment did not find this file.
                 return expect_hold(before);
             case Renaming::name_taken: static_cast<void>(set_aside(path_)); break;
             case Renaming::gone: fail(own.string(), ": is missing; expected the journal that was just written there");
@@ -160,8 +160,8 @@ void Journal::put_in_place(const fs::path& own, const JournalScan& before)
     }
 }
 
-/// Removes the file that this process created at the journal's path and that has no record yet. Another process may be
-/// replacing this file, so whatever is at the path is moved first, and removed only if it is this process's file.
+/// Removes the file that this process created at the journal's path, which has no record yet. Another process may have
+/// put its own file there meanwhile, so the file at the path is moved first, and removed only if it is this process's.
 void Journal::remove_new() noexcept
 {
     try {
@@ -173,7 +173,7 @@ void Journal::remove_new() noexcept
         else
             static_cast<void>(put_at_free(*moved, path_));
     } catch (const Error&) {
-        // The file stays, empty. If another process's file was moved, that process puts it back from its new name.
+        // The file stays, empty. If the moved file was another process's, that process puts it back from its new name.
     }
 }
 
@@ -199,8 +199,8 @@ void Journal::begin(const fs::path& rest, std::span<const std::byte> head)
     is_to_begin_ = true;
 }
 
-/// Must be called before any record is written: a journal whose header was lost in a power cut must contain nothing
-/// else (has_file_header in journal_file.cpp). Returns the reason of a failure; empty on success.
+/// Call before any record is written: a journal that lost its header in a power cut must not contain any record
+/// (has_file_header in journal_file.cpp). Returns the reason of a failure; empty on success.
 std::string Journal::sync_beginning() const
 {
     try {
@@ -241,7 +241,7 @@ void Journal::flush()
     std::unique_lock lock(mutex_);
     const RecordNumber target = last_;
     if (records_.size() >= target) return;
-    // The write in progress may have begun before the last record was appended, so one more is needed.
+    // The write in progress may have begun before the last record was appended, so wait for the next write, too.
     const uint64_t enough = tries_ + 2;
     ++flushing_;
     appended_.notify_all();
@@ -382,7 +382,7 @@ void Journal::write()
             }
         }
         if (!failure.empty()) {
-            // Truncates, since readers would stop at a partial record, and unsynced data may be missing altogether.
+            // Truncates, because readers would stop at a partial record, and unsynced data may not be on disk at all.
             static_cast<void>(::ftruncate(file_.number(), off_t(begin)) == 0);
             written = 0;
             written_bytes = 0;

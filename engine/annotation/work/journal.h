@@ -1,14 +1,14 @@
 #pragma once
-// The journal: every command of the user, appended to a file as it happens. The journal's thread writes at once (a
-// killed program loses the last milliseconds) and syncs at most every 100 ms (a power cut loses no more than that and
+// The journal: every command of the user, appended to a file as it happens. The journal's thread writes at once (if the
+// program is killed, the last milliseconds are lost) and syncs at most every 100 ms (a power cut loses this time and
 // the duration of a disk write).
 //
 //   append (main thread, never waits) -> queue -> frame, write, sync (the journal's thread) -> durable
 //
 // While writing fails, nothing is lost and no caller waits: records stay in memory, `failure` states the reason, and
-// writing is retried every second. Only one process writes a journal: the one that holds it (hold.h), which also locks
-// the file itself, for older programs. An existing file is written only by the process that held the journal before and
-// after it opened the file; a new one is created exclusively, or under a name that only this process uses.
+// writing is retried every second. Only the process that holds a journal (hold.h) writes it; it also locks the file
+// itself, for older programs. A process writes to an existing file only if it held the journal both before and after it
+// opened the file. A new file is created exclusively, or under a name that no other process uses.
 //
 // One thread appends; any thread may query.
 
@@ -29,10 +29,10 @@ class AtomicWriter;
 
 class Journal {
 public:
-    /// Continues after the valid prefix in `before`: keeps any data after it as JOURNAL.rest1, .rest2 and so on, and
-    /// repairs a damaged head. Fails if the file cannot be created or written; fails with JournalTaken if another
-    /// process holds it. `hold`: null if no other process knows the journal. `own`: a file name that only this process
-    /// uses; `before` then describes that file (or none). It replaces any file at `path`, which is renamed.
+    /// Continues the valid prefix that `before` describes. Keeps data after this prefix as JOURNAL.rest1, .rest2 and so
+    /// on, and repairs a damaged head. Fails if the file cannot be created or written; fails with JournalTaken if
+    /// another process holds it. `hold`: null if no other process knows the journal. `own`: a file with a name that
+    /// only this process uses, which `before` then describes; it replaces any file at `path`, which is renamed.
     Journal(const std::filesystem::path& path, JournalScan before, std::shared_ptr<const Hold> hold = {},
             const std::filesystem::path& own = {});
     /// Tries to write the queue first.
@@ -43,24 +43,24 @@ public:
     RecordNumber append(RecordKind kind, std::string label, std::vector<std::byte> content, RecordNumber about = 0);
     /// The number of the last record appended.
     RecordNumber last() const;
-    /// Waits until everything appended is on disk; fails with the reason if that is not possible.
+    /// Waits until all appended records are on disk; fails with the reason if that is not possible.
     void flush();
-    /// The number of the last record on disk; all records before it are on disk as well.
+    /// Number of the last record on disk; all earlier records are on disk, too.
     RecordNumber durable() const;
-    /// Number and checksum of the last durable record; 0, 0 if there is none.
+    /// Number and checksum of the last durable record; both 0 if there is none.
     std::pair<RecordNumber, uint64_t> last_durable() const;
-    /// False if the file was removed or replaced since it was
-    /// opened: data written to it will be lost.
+    /// False if the file was removed or replaced since it was opened: data written to the file will then be
+    /// lost.
     bool is_in_place() const;
-    /// Whether another process claimed the journal (Hold::is_kept), as noticed after the last write.
+    /// Whether another process has claimed the journal (Hold::is_kept), as of the last write.
     bool is_claimed() const { return is_claimed_; }
-    /// The file's present name, which differs if the file was renamed in its folder; empty if it has no name any more.
+    /// The file's present name, which has changed if the file was renamed within its folder; empty if it has no name.
     std::filesystem::path present_name() const;
-    /// Copies the part of the journal that is on disk to another file, atomically.
+    /// Copies the durable part of the journal to another file, atomically.
     void copy_to(const std::filesystem::path& path) const;
-    /// Why writing fails at present; empty if it does not.
+    /// Why writing fails at present; empty if writing does not fail.
     std::string failure() const;
-    /// Size of the file in bytes, plus the uncompressed size of the queue.
+    /// Size of the file in bytes, plus the uncompressed size of the queued records.
     uint64_t bytes() const;
 
     /// The content of a durable record.
@@ -73,7 +73,7 @@ private:
         bool is_framed = false;
     };
     void write();
-    /// Frames the queued records that have no frame yet.
+    /// Frames (and compresses) the queued records that have no frame yet.
     void frame_all(std::deque<Waiting>& waiting);
     /// Returns the reason of a failure; empty on success.
     std::string write_from(uint64_t at, const std::deque<Waiting>& waiting, size_t first) const;
@@ -101,16 +101,16 @@ private:
     bool is_ending_ = false;
     std::string failure_;
 
-    uint64_t checksum_ = 0;     ///< checksum of the last framed record; used by the journal's thread
-    bool is_to_begin_ = false;  ///< header or length may still be missing on disk; used by the journal's thread
+    uint64_t checksum_ = 0;     ///< of the last framed record; used by the journal's thread
+    bool is_to_begin_ = false;  ///< header or length may not be on disk yet; used by the journal's thread
     std::thread thread_;
 };
 
-/// Appends the first `end` bytes of a journal to `to`; `head`: as in JournalScan.
+/// Appends the first `end` bytes of a journal to `to`. `head`: replaces its first bytes, as in JournalScan.
 void copy_bytes(const FileDescriptor& file, const std::filesystem::path& path, uint64_t end,
                 std::span<const std::byte> head, AtomicWriter& to);
 
-/// Fails with JournalTaken if another process locks the file, or wrote, created or replaced it since it was read.
+/// Fails with JournalTaken if another process locks the file, or has written, created or replaced it since it was read.
 void expect_as_read(const std::filesystem::path& path, const JournalScan& before);
 
 }  // namespace shvr

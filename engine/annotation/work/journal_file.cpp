@@ -29,7 +29,7 @@ constexpr size_t FILE_HEADER_BYTES = 16;
 constexpr size_t HEADER_BYTES = RECORD_HEADER_BYTES;
 constexpr size_t CHECKSUM_AT = 32;
 constexpr uint16_t COMPRESSED = 1;
-/// Below this size a zstd frame saves nothing.
+/// Smaller contents do not become shorter in a zstd frame.
 constexpr size_t MIN_COMPRESSED_BYTES = 64;
 
 using Header = std::array<std::byte, HEADER_BYTES>;
@@ -88,7 +88,7 @@ bool has_plausible_sizes(const JournalRecord& record)
     return record.bytes <= MAX_RECORD_BYTES && (record.is_compressed || record.bytes == record.stored_bytes);
 }
 
-/// Returns the fields of a record, except its label and checksum; also sets `label_bytes` to the label's length.
+/// Returns the fields of a record, except its label and checksum. Sets `label_bytes` to the label's length.
 JournalRecord fields_of(const Header& header, uint64_t at, uint64_t& label_bytes)
 {
     label_bytes = get(&header[6], 2);
@@ -101,8 +101,8 @@ JournalRecord fields_of(const Header& header, uint64_t at, uint64_t& label_bytes
             .is_compressed = (get(&header[4], 2) & COMPRESSED) != 0};
 }
 
-/// False if the file has no header yet: after a power cut, a journal that has just begun may contain only some of the
-/// header's bytes, or none, and zeros for the rest. Fails if the file is not a journal.
+/// Returns false if the file has no header yet: after a power cut, a new journal may contain only part of the header,
+/// or none of it, and zeros for the rest. Fails if the file is not a journal.
 bool has_file_header(const FileDescriptor& file, const fs::path& path, const JournalScan& scan)
 {
     const uint64_t file_bytes = scan.file_bytes;

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 using Bytes = std::span<const std::byte>;
 
-/// Tolerated number of flipped bits among the 64 bits of the magic "SHVRJRNL"; texts of other files differ in more.
+/// Tolerated number of flipped bits among the 64 bits of the magic "SHVRJRNL"; other files differ in more bits.
 constexpr int MAX_DAMAGED_BITS = 8;
 
 int bits_between(Bytes a, Bytes b)
@@ -29,7 +29,7 @@ bool are_equal(Bytes a, Bytes b)
     return std::ranges::equal(a, b);
 }
 
-/// Size and checksum of the file's first record if that record is sound; null if it is damaged.
+/// Size and checksum of the file's first record; null if that record is damaged.
 struct First {
     size_t bytes = 0;
     uint64_t checksum = 0;
@@ -41,14 +41,14 @@ std::optional<First> first_record(Bytes bytes)
     return First{parsed->bytes, parsed->record.checksum};
 }
 
-/// The second record, of kind `head`. Its content, the argument `head`, is the file's first bytes and first record.
+/// Makes the second record, of kind `head`. Its content, the argument `head`, is the header and the first record.
 std::vector<std::byte> second_record(Bytes head, uint64_t checksum)
 {
     JournalRecord record{.kind = RecordKind::head};
     return framed(record, head, checksum);
 }
 
-/// The first bytes and the first record, from the beginning of the file; empty if they are damaged.
+/// The header and the first record at the start of the file; empty if either is damaged.
 Bytes sound_front(Bytes begin)
 {
     const std::vector<std::byte> header = journal_header();
@@ -57,7 +57,7 @@ Bytes sound_front(Bytes begin)
     return first ? begin.first(header.size() + first->bytes) : Bytes{};
 }
 
-/// Where the repetition seems to begin: at a (perhaps damaged) "SHVRJRNL" after the first bytes. Null: nowhere.
+/// Start of the repetition: a (perhaps damaged) "SHVRJRNL" after the header. Null if there is none.
 std::optional<size_t> place_of_repetition(Bytes begin)
 {
     const std::vector<std::byte> header = journal_header();
@@ -73,12 +73,12 @@ Bytes sound_repetition(Bytes begin)
     const std::optional<size_t> at = place_of_repetition(begin);
     if (!at) return {};
     const Bytes front = sound_front(begin.subspan(*at));
-    // The place proves that this is a repetition of this journal's own head, not content that quotes another journal.
+    // At just this place, it must be the repetition of this journal's head, not content that quotes another journal.
     return *at == front.size() + RECORD_HEADER_BYTES ? front : Bytes{};
 }
 
-/// A journal that states another version, in undamaged bytes, is from a newer program. The version numbers of newer
-/// programs must differ from 1 in at least two bits.
+/// A journal with another version, in undamaged bytes, is from a newer program. Newer programs must use version numbers
+/// that differ from 1 in at least two bits, so that one flipped bit does not look like a newer version.
 bool is_newer(Bytes begin)
 {
     const std::vector<std::byte> header = journal_header();
@@ -87,7 +87,7 @@ bool is_newer(Bytes begin)
                1;
 }
 
-/// The bytes that should be at the beginning: `front`, followed by its repetition if the journal has one.
+/// The bytes that should be at the start of the file: `front`, then its repetition if the journal has one.
 std::vector<std::byte> expected_head(Bytes begin, Bytes front, bool has_repetition)
 {
     std::vector<std::byte> head(front.begin(), front.end());
@@ -95,8 +95,8 @@ std::vector<std::byte> expected_head(Bytes begin, Bytes front, bool has_repetiti
     const std::vector<std::byte> repetition = second_record(front, checksum);
     const Bytes next = begin.subspan(std::min(begin.size(), head.size()));
     if (!has_repetition && !parse_record(next, checksum) && next.size() >= repetition.size()) {
-        // The repetition is damaged if the records after it continue the journal; otherwise these bytes are not a
-        // repetition.
+        // If the records after these bytes continue the journal, the bytes are a damaged repetition; otherwise they are
+        // no repetition.
         const Bytes after = next.subspan(repetition.size());
         JournalRecord record{.kind = RecordKind::head};
         uint64_t seed = checksum;
@@ -144,8 +144,8 @@ std::vector<std::byte> repaired_head(std::span<const std::byte> begin, const fs:
         return differing(expected_head(begin, front, true));
     const bool is_like_header = bits_between(begin.first(MAGIC_BYTES), header) <= MAX_DAMAGED_BITS;
     if (!is_like_header || is_newer(begin)) return {};
-    // An older journal has no repetition, and the repetition in this journal may be damaged as well. In both cases the
-    // first bytes are derived from the first record.
+    // There is no sound repetition: the journal is older, or the repetition is damaged, too. Then the header is
+    // replaced by the known one and checked against the first record.
     std::vector<std::byte> front(begin.begin(), begin.end());
     std::ranges::copy(header, front.begin());
     if (const Bytes sound = sound_front(front); !sound.empty()) return differing(expected_head(front, sound, false));

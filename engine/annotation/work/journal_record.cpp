@@ -67,7 +67,7 @@ public:
         if (value > most) fail("a number is ", value, "; expected at most ", most);
         return value;
     }
-    /// Reads the number of items that follow, each of at least `bytes_each` bytes.
+    /// Reads the number of the items that follow; each item has at least `bytes_each` bytes.
     size_t count(size_t bytes_each)
     {
         const uint64_t value = whole();

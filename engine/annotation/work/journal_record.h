@@ -1,9 +1,9 @@
 #pragma once
-// The journal's contents as bytes: little-endian; integers in groups of 7 bits, lowest first (LEB128), doubles as their
-// bits. Any thread may call these.
+// The contents of records as bytes: little-endian; integers in groups of 7 bits, lowest first (LEB128), doubles as
+// their bits. Any thread may call these.
 //
-// Readers trust nothing: lengths are checked against the bytes present before memory is allocated, and the result may
-// still not fit a document (Mask::why_it_does_not_fit and its equivalents for other kinds).
+// Readers trust no content: lengths are checked against the bytes present before memory is allocated. A change that was
+// read may still not fit the document (Mask::why_it_does_not_fit and its equivalents for other kinds).
 
 #include <cstddef>
 #include <functional>
@@ -23,18 +23,18 @@ namespace shvr {
 struct JournalSubject {
     Size3 size{0};
     VoxelType type = VoxelType::uint8;
-    std::string image{};  ///< the volume's content hash; empty if it was never computed
+    std::string image{};  ///< the volume's content hash; empty if it was not computed
     bool operator==(const JournalSubject&) const = default;
 };
 
-/// Label of the first `saved` record of a work that started empty although files of earlier work existed. Those files
-/// do not count as saves of the new work.
+/// Label of the first `saved` record of a work that started empty next to files of earlier work. Those files do not
+/// count as saves of the new work.
 inline constexpr char AFRESH[] = "afresh";
 
-/// The files that hold the annotation between sessions, in the state last recorded in the journal; null: no file.
+/// The state of the files with the annotation, as the journal last recorded it; null: no file.
 struct SavedFiles {
     std::optional<uint64_t> mask, trace, density;  ///< file_digest
-    std::optional<SettingValues> settings{};       ///< contents written to the session's file; unknown in old journals
+    std::optional<SettingValues> settings{};       ///< settings written to the session's file; unknown in old journals
     bool operator==(const SavedFiles&) const = default;
 };
 
@@ -49,17 +49,17 @@ std::vector<std::byte> bytes_of(const JournalTime& time);
 std::vector<std::byte> bytes_of(const SavedFiles& files);
 std::vector<std::byte> bytes_of(const SettingValues& values);
 std::vector<std::byte> bytes_of(std::span<const Change> changes);
-/// The whole document as bytes: the changes that create it from an empty one, and the trace's next numbers.
+/// The whole document as bytes: the changes that make it from an empty document, and the trace's next numbers.
 std::vector<std::byte> bytes_of(const Document& document);
 
-/// Functions that read a record's content. Their failures state the reason alone; callers add the file's name.
+/// These functions read a record's content. On failure they state only the reason; callers add the file's name.
 JournalSubject subject_of(std::span<const std::byte> bytes);
 JournalSpace space_of(std::span<const std::byte> bytes);
 JournalTime time_of(std::span<const std::byte> bytes);
 SavedFiles saved_files_of(std::span<const std::byte> bytes);
 SettingValues setting_values_of(std::span<const std::byte> bytes);
 std::vector<Change> changes_of(std::span<const std::byte> bytes);
-/// `empty`: an empty document of the same volume. `convert` is called with each change before the change is applied.
+/// `empty`: an empty document of the same volume. `convert` is called with each change before it is applied.
 Document document_of(std::span<const std::byte> bytes, Document empty,
                      const std::function<void(Change&)>& convert = {});
 

@@ -8,7 +8,7 @@ namespace shvr {
 
 namespace {
 
-/// Calls `row(first voxel, count)` for each row (or part of a row) in a run. A run may span several rows of its brick.
+/// Calls `row(first voxel, count)` for each row of the brick, or part of a row, that a run covers.
 template <class Run, class Row>
 void for_each_row(const Run& run, const Size3& brick_begin, const Row& row)
 {
@@ -65,7 +65,7 @@ PaintPreview preview_of(std::span<const Change> changes, const Size3& volume_siz
         for (int64_t x = at.x; x < at.x + count; ++x) {
             uint32_t& word = row[x / 32];
             const uint32_t bit = 1u << (x % 32);
-            preview.voxels += (word & bit) == 0;  // a voxel may change both its group and its offset
+            preview.voxels += (word & bit) == 0;  // counted once if both its group and its offset change
             word |= bit;
         }
     });

@@ -1,6 +1,6 @@
 #pragma once
-// The voxels that a brush would change if it painted now, as bits of the box around them. They are drawn before
-// anything is painted. Pure; any thread.
+// The voxels that a brush would change if it painted now, as bits of the box around them. They are drawn before the
+// brush paints. Pure; any thread.
 
 #include <cstdint>
 #include <span>
@@ -13,7 +13,7 @@ namespace shvr {
 struct PaintPreview {
     VoxelBox box;  ///< the smallest box around the voxels; empty if there are none
     std::vector<uint32_t>
-        words;           ///< rows of words_per_row(), then y, z slowest; bit b of word w is x = lower.x + 32 w + b
+        words;           ///< rows of words_per_row() words, z slowest; bit b of word w is x = lower.x + 32 w + b
     int64_t voxels = 0;  ///< number of voxels; at most 256^3, as in a brush's region
     enum class Kind { group, density, erase };
     Kind kind = Kind::group;  ///< `erase`: the voxels lose their group, or their offset
@@ -22,7 +22,7 @@ struct PaintPreview {
     int64_t words_per_row() const { return (box.size().x + 31) / 32; }
 };
 
-/// The voxels whose group or offset is changed by `changes`, in a volume of `volume_size`.
+/// The voxels whose group or offset `changes` would change, in a volume of `volume_size`.
 PaintPreview preview_of(std::span<const Change> changes, const Size3& volume_size, PaintPreview::Kind kind);
 
 }  // namespace shvr

@@ -1,5 +1,5 @@
 #pragma once
-// Writes one part of a document to its file, and keeps what another program wrote there. Any thread may call these.
+// Writes one part of a document to its file, and preserves another program's file there. Any thread may call these.
 
 #include <filesystem>
 #include <optional>
@@ -12,27 +12,27 @@
 
 namespace shvr {
 
-/// `journal`: its name (from `files`) and its last durable record are recorded with the mask; null if there is none.
-/// Returns a sentence if the old image is kept under another name because `foreign` demands it. If `progress` throws,
-/// the file (or image) stays as it was.
+/// `journal`: the mask's metadata name it (as in `files`) and its last durable record; null if there is none. Returns a
+/// sentence if the old image is kept under another name because `foreign` demands it. If `progress` throws, the file
+/// (or image) stays as it was.
 std::string write_part(Part part, const Document& document, const WorkFiles& files,
                        const std::vector<LabelImage::Color>& looks, const Journal* journal, Foreign foreign,
                        const Progress& progress = {});
 
-/// The number of a file or folder on its disk, which a new one in its place does not have; 0 if there is none.
+/// The inode number of a file or folder, by which a new file in its place is recognized; 0 if there is none.
 uint64_t inode_of(const std::filesystem::path& path);
 
-/// A file of another program that is about to be replaced. From the construction on it also has its `old_of` name, so
-/// that it has its own name until the new file takes that, even if the process ends in between.
+/// Keeps a file of another program that is about to be replaced: the constructor gives it a second name, its `old_of`
+/// name. So it has a name of its own even if the process ends before or after the replacement.
 class KeptFile {
 public:
-    /// Fails if the file can be neither linked nor copied. Does nothing if another process has moved it meanwhile.
+    /// Fails if the file can be neither linked nor copied. Does nothing if another process has moved the file.
     explicit KeptFile(const std::filesystem::path& path);
-    /// Takes the second name away again if the file was not replaced.
+    /// Removes the second name again if the file was not replaced.
     ~KeptFile();
     KeptFile(const KeptFile&) = delete;
     KeptFile& operator=(const KeptFile&) = delete;
-    /// The second name; null if the file was gone.
+    /// The second name; null if the file was gone before it got one.
     const std::optional<std::filesystem::path>& old() const { return old_; }
     bool is_replaced() const;
 

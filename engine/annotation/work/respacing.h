@@ -1,7 +1,7 @@
 #pragma once
-// Adapts traces to a corrected spacing. Traces are stored in volume space, voxel * spacing; if the spacing changes, a
+// Adapts traces to a corrected spacing. Traces are stored in volume space, voxel * spacing. If the spacing changes, a
 // node stays at its voxel and a radius keeps its number of voxels along x, so lengths change accordingly. Equal values
-// stay equal, so records that fitted one another still do. Any thread.
+// stay equal, so records that fitted each other before still do. Any thread.
 
 #include <string>
 
@@ -20,9 +20,9 @@ struct JournalSpace {
 /// "0.5 0.5 2 um"
 std::string in_words(const JournalSpace& space);
 
-/// Whether two spacings are equal up to rounding and the precision of nine-digit text.
+/// Whether two spacings are equal up to rounding, and to nine digits in text.
 bool is_same_spacing(const glm::dvec3& one, const glm::dvec3& other);
-/// Changes a position to position / from * to, and a radius to radius / from.x * to.x; leaves other changes alone.
+/// Converts a position to position / from * to, and a radius to radius / from.x * to.x; does not affect other changes.
 void respace(Change& change, const glm::dvec3& from, const glm::dvec3& to);
 
 }  // namespace shvr

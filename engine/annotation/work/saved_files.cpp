@@ -37,7 +37,7 @@ std::vector<Change> bricks_between(const SparseBricks<Value>& from, const Sparse
     return changes;
 }
 
-/// `gone`: objects of `from` that `to` lacks; `made`: objects of `to` that are new or changed.
+/// `gone`: removes the objects that `to` lacks. `made`: adds or changes the objects of `to` that are new or different.
 template <class Record, class Map>
 void differences(const Map& from, const Map& to, std::vector<Record>& gone, std::vector<Record>& made)
 {
@@ -60,8 +60,8 @@ std::vector<Change> traces_between(const TraceGraph& from, const TraceGraph& to)
     differences(from.nodes(), to.nodes(), lost_nodes, nodes);
     differences(from.internodes(), to.internodes(), lost_links, links);
     differences(from.internode_radii(), to.internode_radii(), lost_sizes, sizes);
-    // An internode whose nodes change is first removed, then added again. All removals precede all additions, because
-    // two nodes can be joined only once.
+    // An internode that gets other nodes is removed, then added again. All removals precede all additions, because two
+    // nodes can be joined only once.
     std::vector<TraceInternodeChange> joins;
     for (TraceInternodeChange& link : links) {
         if (link.before && (link.before->a != link.after->a || link.before->b != link.after->b)) {
@@ -81,7 +81,7 @@ std::vector<Change> traces_between(const TraceGraph& from, const TraceGraph& to)
     add(lost_sizes);
     add(sizes);
     if (changes.empty()) return changes;
-    // Deselects first, so that the selection never refers to missing objects, in either direction.
+    // Deselects first, so that the selection refers to no missing object, neither forwards nor backwards.
     changes.insert(changes.begin(), TraceChange(TraceSelectionChange{from.selection(), {}}));
     return changes;
 }
@@ -140,7 +140,7 @@ LoadNotes load(Part part, const WorkFiles& files, Document& into)
     const TraceSpace space = space_of(files.volume);
     switch (part) {
         case Part::mask: {
-            // Checks the size first: a mask of another size is also of another image, but its size explains more.
+            // Checks the size (in import_mask) before the image: if both differ, the size is the better explanation.
             const fs::path& file = file_to_read(files, part);
             ImportedMask mask = import_mask(file, space);
             check_mask_image(file, files.volume_hash, files.is_other_name);

@@ -1,7 +1,7 @@
 #pragma once
-// The files in which an annotation is saved, one for each part: their contents, and their differences from a document.
-//
-// Any thread may call these.
+// The files in which an annotation is saved, one per
+// part: their contents, and their differences from a
+// document.
 
 #include <array>
 #include <filesystem>
@@ -19,18 +19,18 @@ namespace shvr {
 struct WorkFiles {
     std::filesystem::path journal{};                   ///< empty: work is kept in memory only
     std::filesystem::path mask{}, trace{}, density{};  ///< empty: not saved
-    /// A mask in a read-only format, with which the work starts as long as `mask` has not been saved; empty if there is
-    /// none. Set by `Work`, which then also gives `mask` another name (saved_mask_path).
+    /// A mask in a read-only format, from which the work starts until `mask` has been saved; empty if there is none.
+    /// Set by `Work`, which then also gives `mask` another name (saved_mask_path).
     std::filesystem::path mask_to_read{};
-    /// Another mask whose header the next save keeps (mask_segments.h): the one saved before under another name, or set
-    /// aside, or taken into this work. Set by `Work`.
+    /// A mask other than `mask` whose header the next save keeps (mask_segments.h): the one saved before under another
+    /// name, one set aside, or one taken into this work. Set by `Work`.
     std::filesystem::path mask_before{};
     std::string volume_hash{};  ///< Session::volume_hash
-    /// Returns whether `hash` is another hash of the same voxels; may read all voxels. Empty: no other hash is.
+    /// Returns whether `hash` is another hash of the same voxels, for which it may read all voxels. Empty: never.
     std::function<bool(const std::string& hash)> is_other_name{};
     VolumeInfo volume{};       ///< the annotated volume
     SettingValues settings{};  ///< the session's settings, as read from its file
-    /// Converts settings to the form that this version writes, so that files and journals of different versions can be
+    /// Converts settings to the spelling of this version, so that files and journals of different versions can be
     /// compared. Fails if the settings cannot be read.
     std::function<SettingValues(const SettingValues&)> normalized{};
     /// Like `settings` and `normalized`, for kept settings (Work::keep_settings); empty if the caller keeps none.
@@ -57,25 +57,25 @@ bool is_there(const std::filesystem::path& path);
 
 /// Sentences about a file that was read.
 struct LoadNotes {
-    std::vector<std::string> losses{};   ///< content that the document lacks: keep the file before saving over it
+    std::vector<std::string> losses{};   ///< content that the document lacks; keep the file before saving over it
     std::vector<std::string> remarks{};  ///< how it was read
 };
-/// The file from which a part is read. For a mask this is `mask_to_read`, if any, until `mask` has been saved.
+/// The file from which a part is read. For a mask this is `mask_to_read`, if there is one, until `mask` has been saved.
 const std::filesystem::path& file_to_read(const WorkFiles& files, Part part);
-/// The mask whose header a save or an export keeps; may not exist.
+/// The mask whose header a save or an export keeps; the file may not exist.
 const std::filesystem::path& mask_of_header(const WorkFiles& files);
-/// Reads the file of a part into a document whose part is empty. Fails if the file is malformed, or belongs to another
-/// volume or image.
+/// Reads the file of a part into a document in which this part is empty. Fails if the file is malformed, or belongs to
+/// another volume or image.
 LoadNotes load(Part part, const WorkFiles& files, Document& into);
 
 /// The changes that turn a part of one document into that of another document of the same volume; none if the parts are
-/// equal. The selection is ignored.
+/// equal. Ignores the selection.
 std::vector<Change> changes_between(Part part, const Document& from, const Document& to);
 
-/// The digest that the saved file of a trace would have; null if the file's format cannot hold the trace.
+/// The digest that a trace's saved file would have; null if the file's format cannot hold the trace.
 std::optional<uint64_t> trace_digest(const WorkFiles& files, const TraceGraph& trace);
 
-/// A file's times, size and inode, as the system states them: a file with an unchanged stamp is not read again.
+/// A file's times, size and inode, as the system states them. A file whose stamp is unchanged is not read again.
 struct FileStamp {
     int64_t written_ns = 0, changed_ns = 0;
     uint64_t bytes = 0, inode = 0;
@@ -84,12 +84,12 @@ struct FileStamp {
 /// Null for folders and missing files.
 std::optional<FileStamp> stamp_of(const std::filesystem::path& path);
 
-/// "paint.mask.old", or "paint.mask.old2" and so on if that already exists.
+/// The first free name for an old file: "paint.mask.old", then "paint.mask.old2" and so on.
 std::filesystem::path old_of(const std::filesystem::path& path);
-/// Renames a file or folder to its `old_of`, and returns this new name; null if another process has moved the file in
-/// the meantime. Fails if renaming fails.
+/// Renames a file or folder to its `old_of`, and returns this new name; null if another process has moved the file
+/// meanwhile. Fails if renaming fails.
 std::optional<std::filesystem::path> set_aside(const std::filesystem::path& path);
-/// Like `set_aside`, but renames `file` to the `old_of` of `path`, which may be another path.
+/// Like `set_aside`, but renames `file` to `old_of(path)`, where `path` may be another path.
 std::optional<std::filesystem::path> rename_to_old(const std::filesystem::path& file,
                                                    const std::filesystem::path& path);
 

@@ -65,7 +65,7 @@ void Work::begin_journal()
         else
             open_journal();
     } catch (const Error&) {
-        expect_hold();  // if the journal was claimed, reports that instead
+        expect_hold();  // if the journal was claimed, fails with that reason instead
         throw;
     }
     record_settings_from_outside();
@@ -116,7 +116,7 @@ void Work::begin_records()
     record_files(RecordKind::saved, is_fresh_ ? AFRESH : "");
 }
 
-/// Writes records about the files found at opening, before any other record.
+/// Writes records about changes found when the work was opened, before any other record.
 void Work::continue_records()
 {
     if (space_to_note_) {
@@ -140,8 +140,8 @@ RecordNumber Work::record(RecordKind kind, std::string label, std::vector<std::b
     return journal_->append(kind, std::move(label), std::move(content));
 }
 
-/// Notes the time of the record that follows, unless the last note is of the same tenth of a second: a stroke that goes
-/// on adds at most ten notes of 48 bytes a second.
+/// Notes the time of the record that follows, unless the last note is from the same tenth of a second. So a long stroke
+/// adds at most ten notes of 48 bytes per second.
 void Work::note_time()
 {
     constexpr int64_t STEP_MS = 100;
@@ -269,7 +269,7 @@ bool Work::is_kept() const
     if (!journal_) return true;
     try {
         journal_->flush();
-        // A journal that another process has claimed is kept under the name that the other process gave it.
+        // If another process has claimed the journal, that process has kept this process's journal under another name.
         return journal_->is_in_place() || (hold_ && !hold_->is_kept() && !journal_->present_name().empty());
     } catch (const Error&) {
         return false;

@@ -1,13 +1,13 @@
 #pragma once
-// The user's work: the document, its history, the journal that stores both, and the files to which it is saved.
+// The user's work: the document, its history, the journal that stores both, and the files to which they are saved.
 //
 // The journal is authoritative between sessions. Opening replays it from its last complete state, so the history
 // continues where it ended, including unsaved work. Saved files (mask, trace, offsets) are for other programs. They are
-// loaded if there is no journal; a missing file is restored from the journal; a file changed by another program
-// requires a decision of the user. Nothing is ever overwritten that the journal does not hold (README.md has the
-// table). The first command creates the journal: looking alone leaves no file.
+// loaded if there is no journal. A missing file is restored from the journal; for a file that another program has
+// changed, the user must decide. No file is overwritten unless the journal holds its content (README.md has the table).
+// The first command creates the journal, so looking at work leaves no file behind.
 //
-// Used by one thread at a time: the one that opens it, then the main thread. Other threads write the journal
+// Used by one thread at a time: the thread that opens the work, then the main thread. Other threads write the journal
 // (journal.h) and saves (Work::Saving).
 
 #include <filesystem>
@@ -27,25 +27,25 @@ namespace shvr {
 /// A message for the user.
 struct Notice {
     std::string text;
-    bool is_loss = false;  ///< something was lost: to be shown even by callers that suppress messages
+    bool is_loss = false;  ///< something was lost; to be shown even by callers that suppress messages
 };
 
-/// Which version counts if another program has changed a saved file.
+/// Which version to use if another program has changed a saved file.
 enum class Belief {
-    ask,      ///< asks the user, by `Work::disputes`; until `choose` is called, the journal is shown and is read-only
-    journal,  ///< the next save keeps the file under another name
-    files,    ///< the differences are applied to the work as a command, which can be undone
+    ask,      ///< the user decides about `Work::disputes`; until `choose` is called, the journal is shown read-only
+    journal,  ///< the journal's version; the next save keeps the file under another name
+    files,    ///< the files' version; the differences become a command, which can be undone
 };
 
 /// A saved file that another program has changed since the journal last recorded it.
 struct Dispute {
     Part part = Part::mask;
     std::filesystem::path file;
-    std::string text;                 ///< the file, what was found in it, and what was expected
-    std::vector<Change> differences;  ///< changes that lead from the journal's content to the file's
+    std::string text;                 ///< the file, its state as found, and the expected state
+    std::vector<Change> differences;  ///< changes from the journal's content to the file's content
 };
 
-/// Saved files were changed by other programs, and the user has not decided yet which version counts.
+/// Thrown while saved files were changed by other programs and the user has not decided which version to use.
 class Disputed : public Error {
 public:
     using Error::Error;
@@ -59,42 +59,42 @@ public:
     Work(const Work&) = delete;  // its history holds a pointer to it
 
     enum class Start {
-        as_left,  ///< starts with the contents of the journal or of the saved files
-        fresh,    ///< starts empty; an existing journal is set aside at the first command
+        as_left,  ///< starts with the contents of the journal or, without one, of the saved files
+        fresh,    ///< starts empty; the first command sets an existing journal aside
     };
     struct Opening {
         Start start = Start::as_left;
         Belief belief = Belief::ask;
         bool only_look = false;  ///< read-only: takes no hold, and accepts no command
-        /// States that the work will be changed at once: a journal that others may still write is taken from them
-        /// during opening, not by the first command. The journal is read again if others write it meanwhile.
+        /// States that the work will be changed at once: a journal that others may still write is then taken from them
+        /// when it is opened, not by the first command. The journal is read again if others write to it meanwhile.
         bool takes_over = false;
-        std::shared_ptr<Hold> hold{};  ///< existing hold of this journal; null: the hold is taken during opening
-        std::string program = "shvr";  ///< description as in Holder, for a hold that is taken during opening
-        Progress progress{};           ///< progress of replaying the journal; an exception from it cancels the opening
+        std::shared_ptr<Hold> hold{};  ///< a hold of this journal to use; null: opening takes the hold
+        std::string program = "shvr";  ///< as in Holder; describes a hold that opening takes
+        Progress progress{};           ///< reports the replay of the journal; an exception from it cancels the opening
     };
-    /// Must be called on a Work without commands. Returns messages about unsaved work, missing or unreadable files, and
-    /// a missing or damaged journal. Fails, loading nothing, if a file belongs to another volume or is malformed and no
-    /// journal holds its content; fails with JournalTaken if another process is writing the journal.
+    /// Call this on a Work without commands. Returns messages about unsaved work, missing or unreadable files, and a
+    /// missing or damaged journal. Fails, without loading anything, if a file belongs to another volume or is malformed
+    /// and no journal holds its content. Fails with JournalTaken if another process is writing the journal.
     std::vector<Notice> open(const WorkFiles& files, const Opening& opening);
     std::vector<Notice> open(const WorkFiles& files) { return open(files, Opening{}); }
 
     /// Decisions to be made; empty: none.
     const std::vector<Dispute>& disputes() const { return disputes_; }
-    /// Resolves all disputes, either in favour of the files (whose differences are applied as one command) or in favour
-    /// of the journal as it is. Returns messages about the choice, and the command, valid until the history changes.
+    /// Resolves all disputes, in favour of the files (applying their differences as one command) or of the journal as
+    /// it is. Returns messages about the choice, and the command, which is valid until the history changes.
     struct Choice {
         std::vector<Notice> notices;
         const Command* command = nullptr;
     };
     Choice choose(Belief belief);
-    /// Fails with Disputed if there are unresolved disputes.
+    /// Fails with Disputed if any dispute is unresolved.
     void expect_choice() const;
 
     /// True if commands and saves are refused.
     bool only_looks() const { return only_looks_; }
-    /// Returns whether another process has claimed the journal since the last call, as seen at the last write to the
-    /// journal. After a claim this work only looks; `claimed` states the reason and where its journal is kept.
+    /// Returns whether another process has claimed the journal since the last call, as noticed at the last write to the
+    /// journal. After a claim this work is read-only; `claimed` states the reason and where its journal is kept.
     bool look_for_claim();
     const std::string& claimed() const { return claimed_; }
     const std::string& claimed_by() const { return claimed_by_; }  ///< as in `in_words`; empty: no process
@@ -102,91 +102,91 @@ public:
     std::shared_ptr<Hold> hold() const { return hold_; }
 
     const Document& document() const { return document_; }
-    /// The session's lasting settings: those of the journal or, if the session's file was changed after it was saved,
-    /// those of the file. In the latter case the first command also records the change of the file, as a separate step.
+    /// The session's lasting settings: the journal's or, if the session's file was changed after it was saved, the
+    /// file's. In the latter case the first command also records the change of the file, as a separate step.
     SettingValues settings() const;
-    /// The settings that are restored on opening but are not part of the work, as last kept.
+    /// The last kept settings: these are restored on opening, but are not part of the work.
     const SettingValues& kept_settings() const { return kept_; }
     const History& history() const { return history_; }
-    /// When a step of the history was begun, in milliseconds since 1970 (UTC), to a tenth of a second; null in journals
-    /// of older programs, and without a journal.
+    /// The time at which a step of the history began, in milliseconds since 1970 (UTC), to a tenth of a second; null
+    /// without a journal and in journals of older programs.
     std::optional<int64_t> time_of(size_t step) const;
-    /// Replaces the clock of the times that the journal notes, for annotators whose time is simulated.
+    /// Replaces the clock that gives the times noted in the journal, for annotators with simulated time.
     void set_clock(std::function<int64_t()> now_ms) { now_ms_ = std::move(now_ms); }
 
-    /// Like the functions of History, but write to the journal first. They fail without any effect if the journal
+    /// Like the functions of History, but write to the journal first. They fail, without any effect, if the journal
     /// cannot be started, is locked by another process, or does not accept the command.
     const Command* perform(Command command);
     void extend(std::vector<Change> changes);
-    /// Sets the sections whose values differ from the present ones, as one command; null if none differs.
+    /// Sets the sections whose values differ from the present ones, as one command; returns null if none differ.
     const Command* change_settings(std::string label, const SettingValues& values);
     const Command* undo();
     const Command* redo();
-    /// Reverts to the last saved state, or to the last state taken from a saved file, as one command; null if nothing
-    /// differs. The state is read from the journal, so later changes of the files do not matter. If nothing was ever
-    /// saved or the journal cannot be read, fails and changes nothing.
+    /// Reverts to the last saved state, or to the last state taken from a saved file, as one command; returns null if
+    /// nothing differs. Reads the state from the journal, so later changes of the files have no effect. Fails, without
+    /// any change, if nothing was ever saved or the journal cannot be read.
     const Command* revert();
-    /// Keeps the sections that differ. This is not a command, and no reason to save. The sections are written to the
-    /// journal if the first command has started it; otherwise, or if the journal cannot be written, they stay in memory
-    /// and are written with the next record. Never fails. Sections that were set for this run only ("key=value") must
-    /// not be passed.
+    /// Keeps the sections whose values differ. This is not a command and does not make a save necessary. The sections
+    /// are written to the journal if the first command has started it; otherwise, or if the journal cannot be written,
+    /// they stay in memory and are written with the next record. Never fails. Do not pass sections that were set for
+    /// this run only ("key=value").
     void keep_settings(const SettingValues& values);
-    /// Selects objects, which must exist. This is not a step of the history.
+    /// Selects objects, which must exist. The selection is not a step of the history.
     void select_trace(TraceSelection selection) { document_.trace.select(std::move(selection)); }
 
-    /// Writes the files, each atomically, and records the save in the journal; a label image gets the groups' `looks`.
-    /// Trace and offsets are written only if they have changed or are missing. A file with content that the journal
-    /// lacks is renamed first and kept. Fails if a file cannot be written (a retry may succeed), or if a part has
-    /// content to save but no file is named for it. `save_session` writes the session's file, which then holds
-    /// `settings()` and `kept_settings()`.
+    /// Writes the files, each atomically, and records the save in the journal. `looks`: the groups' colours and names
+    /// for a label image. Trace and offsets are written only if they have changed or are missing. A file with content
+    /// that the journal lacks is renamed first and kept. Fails if a file cannot be written (a retry may succeed), or if
+    /// a part has content but no file name. `save_session` writes the session's file, which then holds `settings()` and
+    /// `kept_settings()`.
     struct Saved {
         std::vector<std::filesystem::path> files;
         std::vector<Notice> notices;
     };
     Saved save(std::vector<LabelImage::Color> looks = {}, const std::function<void()>& save_session = {});
 
-    /// A save in the background: writes the state at the time when the save began. Later commands are not included and
-    /// stay unsaved. Until `write` has completed, the journal does not record the save.
+    /// A save in the background: writes the state at the start of the save. Later commands are not included and stay
+    /// unsaved. The journal does not record the save before `write` has completed.
     class Saving;
-    /// Copies the state to be written, at the cost of a copy of the document; fails for the same reasons as `save` does
-    /// before it writes. Only one save can be in progress; `end_save` must follow.
+    /// Copies the state to be written, at the cost of a copy of the document. Fails for the same reasons as `save`
+    /// before it writes. Only one save can be in progress; call `end_save` before the next one.
     std::unique_ptr<Saving> begin_save(std::vector<LabelImage::Color> looks);
-    /// Ends a save. Must follow every begin_save, whether or not the files were written.
+    /// Ends a save. Call this after every begin_save, even if the files were not written.
     Saved end_save(Saving& saving);
     bool is_saving() const { return is_saving_; }
 
-    /// Continues the work under other names, none of which may exist yet, with the whole history; the files written
-    /// before stay as they are and are released. Writes in this order, each on disk before the next: a copy of the
-    /// journal, the mark that a save begins, the files, their digests, and `session`, by `save_session`. A crash before
-    /// the session is written leaves files that nothing refers to; after it, a whole project. On failure nothing has
-    /// changed, and new files are removed. If there is no history yet, the new journal begins with the first command.
+    /// Continues the work, with its whole history, under other names, none of which may exist yet. The files under the
+    /// old names stay as they are and are released. Writes, each on disk before the next: a copy of the journal, the
+    /// mark that a save begins, the files, their digests, and `session`, by `save_session`. A crash before the session
+    /// is written leaves files that nothing refers to; a later crash, a complete project. On failure nothing has
+    /// changed, and new files are removed. If there is no history yet, the first command creates the new journal.
     Saved save_as(const WorkFiles& to, std::vector<LabelImage::Color> looks, const std::filesystem::path& session = {},
                   const std::function<void()>& save_session = {});
-    /// save_as() in the background, like `begin_save`. Until `end_save_as`, commands are refused, since they would be
-    /// in only one of the journals.
+    /// save_as() in the background, like `begin_save`. Until `end_save_as`, commands are refused, because only one of
+    /// the two journals would contain them.
     class SavingAs;
     std::unique_ptr<SavingAs> begin_save_as(const WorkFiles& to, std::vector<LabelImage::Color> looks,
                                             const std::filesystem::path& session = {});
     Saved end_save_as(SavingAs& saving);
     bool is_saving_as() const { return is_saving_as_; }
-    /// A function that writes the document, as it is now, into other files, which must not exist yet; callable on any
+    /// A function that writes the present document to other files, which must not exist yet. It may be called on any
     /// thread, even after the work has ended.
     std::function<void(const WorkFiles& to)> copier(std::vector<LabelImage::Color> looks) const;
     void name_files(const std::filesystem::path& mask, const std::filesystem::path& trace,
                     const std::filesystem::path& density);
     /// The mask whose header an export keeps (mask_segments.h).
     const std::filesystem::path& mask_of_header() const { return shvr::mask_of_header(files_); }
-    /// Lets the next save keep the header of a mask that was taken into this work.
+    /// Makes the next save keep the header of a mask that was taken into this work.
     void keep_header_of(const std::filesystem::path& mask) { files_.mask_before = mask; }
     /// Number of commands, undos and redos since the last save.
     size_t unsaved() const { return unsaved_; }
-    /// Whether nothing needs saving: there is no unsaved command, and no file is missing or unreadable.
+    /// Whether nothing needs saving: all commands are saved, and no file is missing or unreadable.
     bool is_saved() const { return unsaved_ == 0 && !misses_files_; }
-    /// Whether the journal on disk holds all commands, so that closing without a save loses none.
+    /// Whether the journal on disk holds all commands, so that closing without a save does not lose any.
     bool is_kept() const;
-    /// Completes background tasks, so that another Work can open the same files before this one is destroyed.
+    /// Completes background tasks, after which another Work can open the same files even before this one is destroyed.
     void settle();
-    /// A function that waits, on any thread, until the journal is on disk, and may outlive the work; empty: no journal.
+    /// A function that waits until the journal is on disk; for any thread, may outlive the work. Empty: no journal.
     std::function<void()> flusher() const;
     /// Returns whether the trace is unchanged since the last save.
     bool trace_is_saved() const { return !touched_[size_t(Part::trace)]; }
@@ -195,15 +195,15 @@ public:
 
     struct JournalState {
         uint64_t bytes = 0;
-        std::string failure;  ///< why writing fails now; work stays in memory
+        std::string failure;  ///< why writing fails now; meanwhile, work stays in memory
     };
     JournalState journal() const;
 
     struct Limits {
-        /// Budget of commands kept in memory; older ones are fetched from the journal.
+        /// Memory budget of commands; older commands are dropped, and fetched from the journal again when needed.
         uint64_t history_bytes = uint64_t{256} << 20;
         /// A state is written to the journal after this many bytes (or twice the last state's size), or this many
-        /// steps. So opening takes about as long as reading one state, and states make up at most half of a journal.
+        /// steps. So opening takes little more than reading one state, and states are at most half of a journal.
         uint64_t bytes_between_states = uint64_t{16} << 20;
         size_t steps_between_states = 20000;
     };
@@ -231,7 +231,7 @@ private:
     void open_fresh();
     std::vector<Notice> open_from_files(const std::string& damage);
     void check_subject() const;
-    /// Returns the reason if it stopped early, and then drops the remaining records from the scan; otherwise empty.
+    /// Replays the journal. If it must stop early, returns the reason and drops the remaining records; otherwise empty.
     std::string replay();
     struct Replayed {
         Document document;
@@ -239,7 +239,7 @@ private:
     };
     Replayed replayed(const JournalScan& scan, RecordNumber last, RecordNumber& at) const;
     std::vector<std::byte> content_of(RecordNumber number) const;
-    /// The changes of a record, in the volume's spacing.
+    /// The changes of a record, converted to the volume's present spacing.
     std::vector<Change> changes_at(RecordNumber number) const;
     void bring_to_spacing(Change& change, RecordNumber number) const;
     void read_spaces(RecordNumber& at);
@@ -294,33 +294,33 @@ private:
     WorkFiles files_;
     Document document_;
     History history_;
-    JournalScan scan_;                       ///< journal as read from the file; new records continue it
+    JournalScan scan_;                       ///< the journal as read from its file; new records continue it
     std::optional<FileDescriptor> scanned_;  ///< its file
-    bool is_to_set_aside_ = false;           ///< the journal that was read does not belong to this work
+    bool is_to_set_aside_ = false;           ///< the journal that was read belongs to other work
     bool only_looks_ = false;
-    bool takes_files_ = false;  ///< the saved files count, instead of a journal that cannot be read
+    bool takes_files_ = false;  ///< the saved files are used, because the journal cannot be read
     bool is_fresh_ = false;     ///< started empty next to files of earlier work
     std::string program_;       ///< as in Holder
     std::string claimed_, claimed_by_;
     std::shared_ptr<Hold> hold_;
     std::vector<Dispute> disputes_;
-    std::vector<Change> settings_from_outside_;  ///< difference between settings and the session's file, to be recorded
+    std::vector<Change> settings_from_outside_;  ///< changes of the session's file, to be recorded
     SettingValues kept_;                         ///< the present values
     SettingValues journaled_kept_;               ///< the kept settings in the journal
-    RecordNumber last_kept_ = 0;                 ///< the journal's last record of kept settings
-    RecordNumber known_kept_ = 0;                ///< last `kept` record that the session's file reflects; 0: unknown
-    size_t kept_since_whole_ = 0;                ///< number of `kept` records since the last one with all sections
+    RecordNumber last_kept_ = 0;                 ///< number of the journal's last `kept` record
+    RecordNumber known_kept_ = 0;                ///< number of the last `kept` record in the session's file; 0: unknown
+    size_t kept_since_whole_ = 0;                ///< number of `kept` records since the last one that has all sections
     bool keeps_settings_ = false;                ///< the caller keeps some settings
-    bool kept_from_outside_ = false;             ///< whether the state of the session's file is yet to be recorded
-    bool cannot_keep_ = false;                   ///< the journal could not be opened; the first command reports why
-    /// The space of the positions from record `since` on; the first one also applies to all earlier records.
+    bool kept_from_outside_ = false;             ///< the state of the session's file must still be recorded
+    bool cannot_keep_ = false;                   ///< opening the journal failed; the first command reports why
+    /// The space of the positions in records from `since` on; the first entry also applies to all earlier records.
     struct SpaceSince {
         RecordNumber since = 0;
         JournalSpace space;
     };
     std::vector<SpaceSince> spaces_;           ///< up to the volume's own space
-    std::optional<RecordKind> space_to_note_;  ///< kind of the record that will state the volume's own spacing
-    SavedFiles known_;                         ///< state of the files as last recorded in the journal
+    std::optional<RecordKind> space_to_note_;  ///< kind of the record that is to state the volume's own spacing
+    SavedFiles known_;                         ///< state of the files as the journal last recorded it
     /// The state of a file as this process last saw it.
     struct Seen {
         std::optional<uint64_t> digest{};
@@ -332,7 +332,7 @@ private:
     std::array<Seen, 3> seen_;
     std::shared_ptr<Journal> journal_;  ///< shared with a save in progress
     size_t unsaved_ = 0;
-    bool misses_files_ = false;      ///< the journal holds files that are missing; the next save writes them
+    bool misses_files_ = false;      ///< files in the journal are missing; the next save writes them
     std::array<bool, 3> touched_{};  ///< since the last save
     bool is_saving_ = false;
     bool is_saving_as_ = false;  ///< `is_saving_` is then true, too
@@ -340,7 +340,7 @@ private:
     std::array<bool, 3> touched_since_saving_{};
     Progress opening_progress_;        ///< null except while opening
     std::function<int64_t()> now_ms_;  ///< null: the time of day
-    /// Records of kind `time` that this process appended.
+    /// A record of kind `time` that this process appended.
     struct TimeSince {
         RecordNumber since = 0;
         int64_t time_ms = 0;
@@ -348,7 +348,7 @@ private:
     std::vector<TimeSince> times_;
     uint64_t since_state_bytes_ = 0, state_bytes_ = 0;
     size_t since_state_steps_ = 0;
-    std::future<std::vector<std::byte>> state_;  ///< a state being encoded from a copy of the document
+    std::future<std::vector<std::byte>> state_;  ///< result of encoding a copy of the document as a state
     RecordNumber state_about_ = 0;
     Limits limits_;
 };
@@ -356,9 +356,9 @@ private:
 class Work::Saving {
 public:
     Saving(const Saving&) = delete;
-    /// Writes the files and their digests, as `Work::save` does, on any thread. To be called only once. An exception
-    /// from `progress` ends the save; as after a failure, some files may then be new and the rest old. `save_names` is
-    /// used if no session is saved; it writes the new names of files, but no settings, into the session's file.
+    /// Writes the files and their digests, as `Work::save` does, on any thread. Call this only once. An exception from
+    /// `progress` cancels the save; as after a failure, some files may then be new and the others old. `save_names` is
+    /// used if no session is saved: it writes the new names of files, but no settings, to the session's file.
     void write(const std::function<void()>& save_session = {}, const Progress& progress = {},
                const std::function<void()>& save_names = {});
 
@@ -387,7 +387,7 @@ private:
 class Work::SavingAs {
 public:
     SavingAs(const SavingAs&) = delete;
-    /// Like Saving::write, but removes the new files if the save does not complete.
+    /// Like Saving::write, but removes the new files if the save fails or is cancelled.
     void write(const std::function<void()>& save_session = {}, const Progress& progress = {});
 
 private:
@@ -399,7 +399,7 @@ private:
     std::vector<LabelImage::Color> looks_;
     std::filesystem::path session_;
     std::string program_;
-    std::shared_ptr<Journal> before_;  ///< the journal of the work under its old name; null if it has no history yet
+    std::shared_ptr<Journal> before_;  ///< the journal under the work's old name; null if there is no history yet
     SettingValues kept_;
     RecordNumber last_kept_ = 0, known_kept_ = 0;
 
@@ -412,7 +412,7 @@ private:
     bool has_session_ = false, is_written_ = false;
 };
 
-/// Returns a notice if the journal is missing although the mask names it; null if it is present or none is named.
+/// Returns a notice if the mask names a journal that is missing; null if the journal is there or none is named.
 std::optional<Notice> note_missing_journal(const WorkFiles& files);
 
 }  // namespace shvr

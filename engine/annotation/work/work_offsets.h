@@ -1,5 +1,5 @@
 #pragma once
-// A volume with the user's density offsets, for callers without a device: value + offset, clamped to the type
+// A volume with the user's density offsets added, for callers without a device: value + offset, clamped to the type
 // (engine/volume/offset_source.h).
 
 #include "engine/annotation/work/work.h"
@@ -7,16 +7,16 @@
 
 namespace shvr {
 
-/// The bricks with offsets, as OffsetSource takes them.
+/// The bricks with offsets, in the form that OffsetSource takes.
 std::vector<OffsetSource::Brick> offset_bricks(const DensityField& field);
 
-/// Returns `base` with the field's offsets added, or `base` itself if there are none. The field must have the volume's
-/// size and type; later changes of the field have no effect on the result.
+/// Returns `base` with the field's offsets added, or `base` itself if there are no offsets. The field must have the
+/// volume's size and type. Later changes of the field do not affect the result.
 std::shared_ptr<const VolumeSource> with_offsets(std::shared_ptr<const VolumeSource> base, const DensityField& field);
 
-/// Reads only the offsets that `Work::open` would load; if there is no journal, mask and trace are not read. Fails as
-/// `Work::open` does; fails with Disputed if another program has changed the offsets' file and `belief` does not
-/// decide. Appends messages to `notices`. One thread.
+/// Reads the offsets that `Work::open` would load; without a journal, does not read mask and trace. Fails like
+/// `Work::open`; fails with Disputed if another program has changed the offsets' file and `belief` does not decide.
+/// Appends messages to `notices`. One thread.
 DensityField offsets_of(const WorkFiles& files, Belief belief, std::vector<Notice>& notices);
 
 }  // namespace shvr

@@ -1,4 +1,4 @@
-// Opens work: the journal, the saved files next to it, and which of them counts if they differ.
+// Opens work: reads the journal and the saved files next to it, and decides which of them to use if they differ.
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -29,7 +29,7 @@ bool is_step(RecordKind kind)
     return kind == RecordKind::command || kind == RecordKind::undo || kind == RecordKind::redo;
 }
 
-/// A save contains the state at its start, so steps made before its end are not included.
+/// Counts steps since the last save. A save contains the state at its start, so steps made during the save count, too.
 size_t steps_since_save(const JournalScan& scan)
 {
     size_t steps = 0;
@@ -60,7 +60,7 @@ fs::path plain(const fs::path& path)
     return fs::absolute(path).lexically_normal();
 }
 
-/// Whether MASK.json says that the mask was saved with this journal, or with one at its path.
+/// Whether MASK.json says that the mask was saved with this journal, or with another journal at this path.
 bool names_journal(const WorkFiles& files)
 {
     const std::optional<MaskJournal> named = journal_of_mask(files.mask);
@@ -95,7 +95,7 @@ std::vector<Notice> Work::open(const WorkFiles& files, const Opening& opening)
         opening.hold && plain(opening.hold->journal()) == plain(files.journal) && opening.hold->is_kept();
     if (!only_looks_) {
         hold_ = is_given ? opening.hold : Hold::take(files.journal, opening.program);
-        std::set<fs::path> folders;  // folders in which killed programs may have left the files of a save
+        std::set<fs::path> folders;  // where killed programs may have left the temporary files of a save
         for (const fs::path& file : {files.journal, files.mask, files.trace, files.density})
             if (!file.empty()) folders.insert(file.parent_path());
         for (const fs::path& folder : folders) collect_temporary_files(folder);
@@ -103,7 +103,7 @@ std::vector<Notice> Work::open(const WorkFiles& files, const Opening& opening)
     is_fresh_ = opening.start == Start::fresh;
     takes_files_ = opening.belief == Belief::files || is_fresh_;
     std::vector<Notice> notices = read();
-    // Changes seen now may come from a save that another process has in progress, so they are looked at again.
+    // Another process may be in the middle of a save, so changed files are read again before they count as disputes.
     for (int i = 0; i < TRIES && only_looks_ && !disputes_.empty() && holder_of(files.journal); ++i) {
         std::this_thread::sleep_for(TURN);
         notices = read();
@@ -125,7 +125,7 @@ void Work::name_mask(const fs::path& stated)
     files_.mask_to_read = files_.mask == stated ? fs::path() : stated;
 }
 
-/// Reports, at opening and before any painting, which mask is read if it can only be read, not written.
+/// When work is opened, reports which mask is read if its format is read-only, before the user paints anything.
 void Work::tell_mask_to_read(std::vector<Notice>& notices) const
 {
     if (is_in_archive(files_.mask))
@@ -173,7 +173,7 @@ std::vector<Notice> Work::open_once()
     std::vector<Notice> notices;
     const std::string name = files_.journal.string();
     if (!damage.empty()) notices.push_back({sentence(name, ": ", damage, "; what comes before is used"), true});
-    // A partial record at the end is not damage if another process is just writing it.
+    // While another process is writing, a partial record at the end is not damage.
     if (scan_.end < scan_.file_bytes && !(only_looks_ && holder_of(files_.journal)))
         notices.push_back({sentence(name, ": its last ", scan_.file_bytes - scan_.end,
                                     " bytes are an incomplete or damaged record; expected complete ones; the ",
@@ -212,7 +212,7 @@ void Work::read_journal()
     }
 }
 
-/// Treats existing files as those of earlier work; they are renamed and kept if the earlier work's journal lacks them.
+/// Treats existing files as those of earlier work. They are renamed and kept if the earlier work's journal lacks them.
 void Work::open_fresh()
 {
     read_journal();
@@ -235,7 +235,7 @@ void Work::open_fresh()
     }
 }
 
-/// Opens work without a journal, or with a journal that holds no state. `damage`: why it holds no state, if known.
+/// Opens work without a journal, or with a journal that has no state. `damage`: the reason for that, if known.
 std::vector<Notice> Work::open_from_files(const std::string& damage)
 {
     std::vector<Notice> notices;
@@ -256,12 +256,12 @@ std::vector<Notice> Work::open_from_files(const std::string& damage)
              true});
     for (const Part part : PARTS) {
         note_file(part);
-        // A mask may be a label image in an archive; trace and offsets, by default next to the mask, cannot.
+        // Only a mask may be in an archive, as a label image; trace and offsets are by default next to the mask.
         const fs::path &file = file_to_read(files_, part), &saved = file_of(files_, part);
         if (is_there(file) || (part == Part::mask && is_in_archive(file))) {
             const LoadNotes notes = load(part, files_, document_);
             for (const std::string& loss : notes.losses) {
-                // The file holds data that was not kept in memory.
+                // The document lacks data of the file, so a save must not overwrite the file.
                 seen_[size_t(part)].is_foreign = file == saved;
                 const std::string how_kept = "; the next save keeps this file as " + old_of(saved).string();
                 notices.push_back({sentence(loss, file == saved ? how_kept : std::string()), true});
@@ -316,7 +316,7 @@ std::string Work::replay()
     }
 }
 
-/// Returns the work as it was after record `last`. On failure, `at` is the record that could not be replayed.
+/// Returns the work as of record `last`. On failure, `at` is the record that could not be replayed.
 Work::Replayed Work::replayed(const JournalScan& scan, RecordNumber last, RecordNumber& at) const
 {
     Replayed work{empty_document(), {}};
@@ -351,7 +351,7 @@ Work::Replayed Work::replayed(const JournalScan& scan, RecordNumber last, Record
                 else if (!work.history.redo(work.document))
                     fail("more commands are redone than were undone");
                 break;
-            default: break;  // records of states, of saves, and of kinds unknown to this version
+            default: break;  // states, saves, and kinds that this version does not know
         }
     };
     RecordNumber known = 0;
@@ -379,7 +379,7 @@ void Work::look_at_files(std::vector<Notice>& notices)
             try {
                 known_kept_ = scan_.records[number - 1].about;
                 known_ = saved_files_of(content_of(number));
-            } catch (const Error&) {  // in this case every file is compared with the work itself
+            } catch (const Error&) {  // without this record, every file is compared with the work
             }
             break;
         }
@@ -443,7 +443,7 @@ void Work::look_at_mask_image(std::vector<Notice>& notices) const
     }
 }
 
-/// Returns the record at which a save began whose end is the record `saved`. The save holds the work as of that record.
+/// Returns the record that begins the save whose end is the record `saved`. The save holds the work as of that record.
 RecordNumber Work::begin_of_save(const JournalScan& scan, RecordNumber saved)
 {
     for (RecordNumber number = saved - 1; number > 0; --number) {
@@ -451,10 +451,10 @@ RecordNumber Work::begin_of_save(const JournalScan& scan, RecordNumber saved)
         if (kind == RecordKind::saving) return number;
         if (kind == RecordKind::saved) break;
     }
-    return saved;  // the first record, which lists files that were found, not saved
+    return saved;  // the first `saved` record lists files as found, without a save
 }
 
-/// The states that saves may have written: the state of the last completed save, and those of all saves begun since.
+/// The states that saves may have written: that of the last completed save, and those of all saves begun since then.
 std::vector<Document> Work::documents_at_saves() const
 {
     constexpr size_t MAX_SAVES = 512;  // each is replayed
@@ -475,7 +475,7 @@ std::vector<Document> Work::documents_at_saves() const
     return documents;
 }
 
-/// Whether a file with unexpected bytes has content that a save, perhaps an interrupted one, may have written.
+/// Whether a save, perhaps an interrupted one, may have written the content of a file that has unexpected bytes.
 bool Work::is_as_written(Part part, const Document& found) const
 {
     const auto is_equal = [&](const Document& document) {

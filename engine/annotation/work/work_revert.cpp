@@ -6,7 +6,7 @@
 
 namespace shvr {
 
-/// Counts a part that was taken from a file changed by others as saved at that moment.
+/// The last save of each part. If a part was taken from a file that others changed, that counts as a save.
 Work::LastSave Work::last_save(const JournalScan& scan) const
 {
     LastSave last;
@@ -22,7 +22,7 @@ Work::LastSave Work::last_save(const JournalScan& scan) const
         } catch (const Error&) {
             continue;  // no information
         }
-        // A journal begins with the files that existed then, which may belong to other work.
+        // A journal's first record of files lists those that existed then; they may belong to other work.
         const bool is_of_files = record.label != AFRESH && (files.mask || files.trace || files.density);
         for (const Part part : PARTS) {
             RecordNumber& of = last.of[size_t(part)];
@@ -35,7 +35,7 @@ Work::LastSave Work::last_save(const JournalScan& scan) const
     return last;
 }
 
-/// Changes that turn the present settings into those of the session's file or, if these are unknown, of `saved`.
+/// The changes from the present settings to those in the session's file or, if these are unknown, to those of `saved`.
 std::vector<Change> Work::settings_since_save(const Document& saved) const
 {
     SettingValues then = known_.settings.value_or(saved.settings.values());

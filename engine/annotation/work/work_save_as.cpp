@@ -1,4 +1,4 @@
-// Continues the work under other names, with the whole history.
+// Continues the work under other names, together with its whole history.
 
 #include <unistd.h>
 
@@ -23,7 +23,7 @@ void expect_free(const WorkFiles& files, const fs::path& session)
     }
 }
 
-/// Owns new files, created where none existed, and removes them unless they are to stay.
+/// Owns files created at free paths; removes them in its destructor unless `keep` was called.
 class Made {
 public:
     Made() = default;
@@ -136,7 +136,7 @@ Work::Saved Work::end_save_as(SavingAs& saving)
     SHVR_CHECK(is_saving_as_, "no save under another name has begun");
     is_saving_ = is_saving_as_ = false;
     const bool has_history = saving.before_ != nullptr;
-    saving.before_.reset();  // the previous journal may be reopened before the save object is destroyed
+    saving.before_.reset();  // the old journal may be reopened before `saving` is destroyed
     if (!saving.is_written_) {
         if (journal_) write_kept();
         return saving.saved_;

@@ -1,4 +1,4 @@
-// Saves: the state to be written is copied at once, on the work's thread, and written on any thread.
+// Saves: the state is copied at once, on the work's thread, and then written on any thread.
 
 #include <sys/stat.h>
 
@@ -62,7 +62,7 @@ void Work::note_file(const fs::path& file, Seen& seen)
 
 namespace {
 
-/// Whether a part is saved as OME-Zarr at this path.
+/// Whether a part saved at this path becomes an OME-Zarr folder.
 bool is_saved_as_folder(Part part, const fs::path& file)
 {
     return part != Part::trace && is_label_image(file) && (part == Part::mask || is_offset_export(file));
@@ -95,7 +95,7 @@ std::string write_part(Part part, const Document& document, const WorkFiles& fil
     return {};
 }
 
-/// Writes a part to a file that does not exist yet.
+/// Writes a part to a new file, which must not exist yet.
 void Work::write(Part part, const Document& document, const WorkFiles& files,
                  const std::vector<LabelImage::Color>& looks, const Journal* journal, const Progress& progress)
 {
@@ -158,7 +158,7 @@ std::unique_ptr<Work::Saving> Work::begin_save(std::vector<LabelImage::Color> lo
     refuse_if_only_looking();
     expect_choice();
     expect_names(files_);
-    // Also called if another process has begun a journal since this process last looked; begin_journal then refuses.
+    // Also called if another process has begun a journal since this process last looked; begin_journal then fails.
     if (scan_.inode != 0 || is_there(files_.journal) || history_.undoable() + history_.redoable() > 0) begin_journal();
     if (journal_) journal_->append(RecordKind::saving, {}, {});
     is_saving_ = true;
@@ -180,7 +180,7 @@ std::unique_ptr<Work::Saving> Work::begin_save(std::vector<LabelImage::Color> lo
     return saving;
 }
 
-/// The mask is always written. Another part is written even when it has become empty, but not if it never had
+/// The mask is always written. Another part is also written when it has become empty, but not if it never had
 /// content.
 bool Work::Saving::is_to_write(Part part) const
 {
@@ -189,7 +189,7 @@ bool Work::Saving::is_to_write(Part part) const
     return is_there(file) ? touched_[size_t(part)] : holds_any(document_, part) || digest_of(known_, part).has_value();
 }
 
-/// Whether a file has content that the journal lacks: detected at opening, or written by other programs since.
+/// Whether a file has content that the journal lacks: found at opening, or written by another program since then.
 bool Work::Saving::is_foreign(Part part) const
 {
     const fs::path& file = file_of(files_, part);
@@ -206,7 +206,7 @@ bool Work::Saving::is_foreign(Part part) const
 
 namespace {
 
-/// `old`: where the file of another program is now; null: there was none.
+/// `old`: where the file of another program is kept; null if there was none.
 void note_kept(std::vector<Notice>& notices, Part part, const fs::path& file, const std::optional<fs::path>& old)
 {
     if (!old) return;
@@ -225,8 +225,8 @@ void Work::Saving::write(Part part, const Progress& progress)
     if (hold_ && !hold_->is_kept())
         throw JournalTaken(sentence(file.string(), ": is not saved, since another process has taken the journal ",
                                     files_.journal.string(), " over; expected this process to be its only writer"));
-    // What another program wrote keeps its name until what is saved takes that: a file by a second name, a folder since
-    // names are exchanged. Only a folder where a file belongs, or the reverse, is moved first.
+    // A file of another program keeps its name until the new file replaces it: a file gets a second name before that,
+    // and folders exchange names. Only if one of the two is a folder and the other is not, the old one is moved first.
     const bool is_foreign_now = is_foreign(part);
     const uint64_t inode = inode_of(file);
     std::optional<KeptFile> kept_file;
@@ -241,7 +241,7 @@ void Work::Saving::write(Part part, const Progress& progress)
         note_kept(saved_.notices, part, file, old);
         if (part == Part::mask) files_.mask_before = old.value_or(file);  // its header is read before it is replaced
     }
-    // If not excluded, the file (if any) is from an interrupted save, or from a program that wrote the same content.
+    // Otherwise a file here may be from an interrupted save, or from a program that wrote the same content.
     const bool is_last_save = seen.digest && seen.digest == digest_of(known_, part);
     const Foreign foreign = is_foreign_now ? Foreign::replaced : is_last_save ? Foreign::excluded : Foreign::kept;
     try {
@@ -251,7 +251,7 @@ void Work::Saving::write(Part part, const Progress& progress)
         const bool is_untouched = inode != 0 && inode_of(file) == inode;
         if (is_foreign_now && is_untouched) throw;  // it is still the other program's
         if (kept_file) note_kept(saved_.notices, part, file, kept_file->old());
-        // Even a partial write is this process's. An untouched file is not read again, which could take long.
+        // A partial write is this process's own. An untouched file is not read again, which could take long.
         if (const std::optional<FileStamp> stamp = stamp_of(file); !stamp || stamp != seen.stamp) note_file(file, seen);
         throw;
     }
@@ -292,7 +292,7 @@ Work::Saved Work::end_save(Saving& saving)
 {
     SHVR_CHECK(is_saving_, "no save has begun");
     is_saving_ = false;
-    // The journal may be opened again before the save object is destroyed.
+    // The journal may be opened again before `saving` is destroyed.
     saving.journal_.reset();
     saving.hold_.reset();
     seen_ = saving.seen_;

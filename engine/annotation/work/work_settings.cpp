@@ -1,5 +1,5 @@
-// Undoable settings: the choice between journal and session file at opening, and the records of changes. Kept settings
-// (restored on opening, but not steps of the history): likewise their choice and their records.
+// Undoable settings: whether to use the journal's or the session file's at opening, and the records of their changes.
+// The same for kept settings, which are restored on opening but are not steps of the history.
 
 #include <utility>
 
@@ -7,7 +7,7 @@
 
 namespace shvr {
 
-/// Decides for each setting whether the journal or the session's file counts.
+/// Decides for each setting whether to use the journal's value or that of the session's file.
 void Work::compare_settings(std::vector<Notice>& notices)
 {
     const std::string name_of_journal = files_.journal.string();
@@ -50,7 +50,7 @@ SettingValues Work::settings() const
     return settings.values();
 }
 
-/// Records a change of the session's file by another program as a step like any other, so it can be undone, too.
+/// Records a change that another program made to the session's file as an ordinary step, so that it can be undone.
 void Work::record_settings_from_outside()
 {
     if (settings_from_outside_.empty()) return;
@@ -58,7 +58,7 @@ void Work::record_settings_from_outside()
     const RecordNumber number = record(RecordKind::command, command.label, bytes_of(command.changes));
     history_.perform(document_, std::move(command), number);
     note_unsaved(1);
-    // Without this, the difference in the session's file would be detected again after the next change.
+    // Otherwise the next comparison would find the same difference in the session's file again.
     if (!known_.settings) known_.settings.emplace();
     for (const auto& [name, value] : files_.settings) (*known_.settings)[name] = value;
     record_files(RecordKind::known);
@@ -80,7 +80,7 @@ const Command* Work::change_settings(std::string label, const SettingValues& val
 
 namespace {
 
-/// After this many records of differences, a record of all sections is written, so that opening reads few records.
+/// After this many records of differences, all sections are recorded, so that opening must read only few records.
 constexpr size_t MAX_DIFFERENCES = 256;
 
 SettingValues normalized_by(const std::function<SettingValues(const SettingValues&)>& normalized,
@@ -91,7 +91,7 @@ SettingValues normalized_by(const std::function<SettingValues(const SettingValue
 
 }  // namespace
 
-/// Kept settings as of a `kept` record. Each such record names its predecessor, back to a record of all sections.
+/// Kept settings as of a `kept` record. Each such record names the previous one, back to a record with all sections.
 SettingValues Work::kept_at(RecordNumber number) const
 {
     SettingValues values;
@@ -107,7 +107,7 @@ SettingValues Work::kept_at(RecordNumber number) const
     return values;
 }
 
-/// Decides for each section whether the journal or the session's file counts.
+/// Decides for each section whether to use the journal's value or that of the session's file.
 void Work::compare_kept_settings(std::vector<Notice>& notices)
 {
     SettingValues in_journal, saved;
@@ -177,7 +177,7 @@ void Work::keep_settings(const SettingValues& values)
     if (!differs || only_looks_ || is_saving_as_) return;
     if (journal_) return write_kept();
     const bool is_there = !scan_.records.empty() && !is_to_set_aside_;
-    // Writes nothing without a hold: another program may write the journal until a command takes the hold.
+    // Writes nothing without an undisputed hold: another program may write the journal until a command takes the hold.
     if (!is_there || !hold_ || !hold_->doubtful().empty() || !disputes_.empty() || cannot_keep_) return;
     try {
         open_journal();

@@ -1,4 +1,4 @@
-// Spacing of the positions in a journal. If the volume gets another spacing, nodes stay at their voxels.
+// The spacing of positions in a journal. If the volume gets another spacing, nodes stay at their voxels.
 
 #include "engine/annotation/work/work.h"
 
@@ -11,14 +11,14 @@ std::vector<Change> Work::changes_at(RecordNumber number) const
     return changes;
 }
 
-/// Converts a change through all spacings that the journal states after the change's record.
+/// Converts a change to the present spacing, through each spacing that the journal states after the change's record.
 void Work::bring_to_spacing(Change& change, RecordNumber number) const
 {
     for (size_t i = 1; i < spaces_.size(); ++i)
         if (number < spaces_[i].since) respace(change, spaces_[i - 1].space.spacing, spaces_[i].space.spacing);
 }
 
-/// `at`: on failure, the record that cannot be read.
+/// `at`: on failure, the number of the record that cannot be read.
 void Work::read_spaces(RecordNumber& at)
 {
     spaces_.clear();
@@ -35,8 +35,8 @@ void Work::read_spaces(RecordNumber& at)
     spaces_.push_back({scan_.records.size() + 1, std::move(own)});
 }
 
-/// Reports that the journal has another spacing or unit for the same voxels, and marks the files that state a spacing,
-/// so that they are rewritten.
+/// Reports that the journal has another spacing or unit for the same voxels, and has all saved files rewritten, since
+/// they may state the old spacing.
 void Work::tell_spacing(std::vector<Notice>& notices)
 {
     if (!space_to_note_ || spaces_.size() < 2) return;

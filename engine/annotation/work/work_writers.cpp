@@ -1,4 +1,4 @@
-// Handles other writers of the work's journal: their claims, their files, and the path of this work's own file.
+// Handles other writers of the work's journal: their claims and their files, and keeps this work's file at its path.
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -13,8 +13,8 @@ namespace shvr {
 
 namespace fs = std::filesystem;
 
-/// Handles a claim of the journal by another process: this process's records stay in the file that the other process
-/// has renamed; if it has not, the file is renamed here.
+/// Handles a claim of the journal by another process. This process's records stay in its file, which the other process
+/// should have renamed; otherwise the file is renamed here.
 void Work::note_claim()
 {
     const std::optional<Holder> other = hold_->successor();
@@ -56,7 +56,7 @@ bool Work::look_for_claim()
     return true;
 }
 
-/// Reports, at opening, the processes that may still write the journal.
+/// When work is opened, reports the processes that may still write the journal.
 void Work::tell_doubtful(std::vector<Notice>& notices) const
 {
     if (!hold_) return;
@@ -69,8 +69,8 @@ void Work::tell_doubtful(std::vector<Notice>& notices) const
              true});
 }
 
-/// Begins the journal at once if others may still write it. Records that they write after their marks are revoked are
-/// not kept; earlier records are read again.
+/// Begins the journal at once if others may still write it. Records that they wrote before their marks were revoked are
+/// read again; later records are not included.
 void Work::take_over(std::vector<Notice>& notices)
 {
     constexpr int TRIES = 3;
@@ -84,14 +84,14 @@ void Work::take_over(std::vector<Notice>& notices)
         }
 }
 
-/// Continues in a copy that this process alone created, if it is unknown whether other writers have ended: this process
-/// never writes their file again. Null if all of them have closed the journal meanwhile.
+/// If it is unknown whether other writers have ended, continues in a copy that only this process writes, and never
+/// writes their file again. Null if all of them have closed the journal meanwhile.
 std::shared_ptr<Journal> Work::journal_left_to_others()
 {
     expect_as_read(files_.journal, scan_);
     if (!hold_->claim()) return nullptr;
     JournalScan copied = is_to_set_aside_ ? JournalScan{} : scan_;
-    // Without a journal there is nothing to copy. A journal that others begin at this moment is refused.
+    // Without a journal there is nothing to copy. If another process begins one at this moment, Journal fails.
     if (scan_.inode == 0) return std::make_shared<Journal>(files_.journal, copied, hold_);
     const fs::path own = hold_->own_name();
     ::unlink(own.c_str());  // left by an attempt that failed
@@ -108,8 +108,8 @@ std::shared_ptr<Journal> Work::journal_left_to_others()
     return std::make_shared<Journal>(files_.journal, copied, hold_, own);
 }
 
-/// If the journal's file was removed or replaced, anything written to it would be lost when this process ends. So the
-/// journal is restored to its path; a file that has replaced it is kept under another name.
+/// If the journal's file was removed or replaced, its content would be lost when this process ends. So the journal is
+/// restored to its path; a file that has replaced it is kept under another name.
 void Work::keep_journal_in_place()
 {
     if (journal_->is_in_place()) return;
