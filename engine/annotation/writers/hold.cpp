@@ -27,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t MAX_LOCK_BYTES = 4096;
-/// Maximum length of one part, since messages quote it.
+/// Maximum length of a line's value, because messages quote it.
 constexpr size_t MAX_PART_BYTES = 120;
 
 struct flock whole_file(short type)
@@ -56,7 +56,7 @@ bool is_locked(const FileDescriptor& file)
     return ::fcntl(file.number(), F_OFD_GETLK, &range) == 0 && range.l_type != F_UNLCK;
 }
 
-/// False if the file was removed or replaced since it was opened.
+/// Whether the open file is still at the path: false if it was removed or replaced.
 bool is_at(const FileDescriptor& file, const fs::path& path)
 {
     struct stat opened {
@@ -75,7 +75,7 @@ std::string user_name()
     return sentence(::geteuid());
 }
 
-/// Visits the lines of JOURNAL.lock and the members that they set.
+/// Visits the names of the lines of JOURNAL.lock, each with the member that the line sets.
 template <class SomeHolder, class Visit>
 void each_line(SomeHolder& holder, const Visit& visit)
 {
@@ -91,7 +91,7 @@ Holder this_process(std::string_view program)
     return {std::string(program), sentence(::getpid()), host_name(), user_name(), time_in_words(std::time(nullptr))};
 }
 
-/// Write errors are not reported: the lock matters, not the content of its file.
+/// Does not report write errors: only the lock matters, not the content of its file.
 void describe(const FileDescriptor& file, const Holder& holder)
 {
     const std::string text = to_text(holder);
@@ -107,7 +107,7 @@ Holder described(const FileDescriptor& file)
     return parse_holder(text);
 }
 
-/// Returns whether the content is empty or a dead process's of this host, so the present holder has yet to write.
+/// Whether the content is empty or of an ended process on this host, so the present holder has yet to write.
 bool is_dated(const Holder& holder)
 {
     const std::optional<int64_t> process = whole_of(holder.process);
@@ -133,10 +133,10 @@ Holder holder_in(const FileDescriptor& file)
                                 "; expected nobody else to be writing it"));
 }
 
-/// False only if there certainly is no such file.
+/// Returns false only if it is certain that there is no such file.
 bool is_there(const fs::path& path)
 {
-    // On network file systems, opening a file asks the server; querying the file's status may not.
+    // Opens the file, because on network file systems this asks the server, while stat(2) may use cached data.
     const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW));
     return file || errno != ENOENT;
 }
@@ -198,11 +198,11 @@ namespace {
 std::optional<FileDescriptor> locked(const fs::path& journal)
 {
     const fs::path path = lock_path(journal);
-    constexpr int TRIES = 100;  // number of retries after another process released or took the lock between two calls
+    constexpr int TRIES = 100;  // for when other processes release or take the lock between two calls
     for (int i = 0; i < TRIES; ++i) {
         FileDescriptor file = opened(path, O_RDWR | O_CREAT);
         if (!file) {
-            // The file belongs to another user and can only be read.
+            // The file may belong to another user, so that it can only be read.
             const FileDescriptor readable = opened(path, O_RDONLY);
             if (!readable) return std::nullopt;
             if (is_locked(readable)) refuse(journal, holder_in(readable));
@@ -221,7 +221,7 @@ std::optional<FileDescriptor> locked(const fs::path& journal)
     return std::nullopt;
 }
 
-/// A copy of the journal, made by the owner of the mark, who is about to put the copy in the journal's place.
+/// The path of the copy of the journal that the mark's owner makes before it replaces the journal with the copy.
 fs::path copy_beside(const fs::path& mark)
 {
     return fs::path(mark).replace_extension(".copy");
@@ -256,12 +256,12 @@ std::shared_ptr<Hold> Hold::take(const fs::path& journal, std::string_view progr
             if (lock) hold->lock_.emplace(std::move(*lock));
             return hold;
         }
-        // Two processes that begin at the same moment both step back, for different times.
+        // Two processes that begin at the same moment both back off, for different times.
         std::this_thread::sleep_for(TURN + std::chrono::microseconds(::getpid() % 97 * 50));
     }
 }
 
-/// Returns false if another process is also looking, unless this is the last try; fails if one holds the journal.
+/// Returns false if another process is trying, too, unless this is the last try; fails if a process holds the journal.
 bool Hold::looks_alone(bool is_last_try)
 {
     std::optional<std::vector<WriterMark>> marks = marks_of(journal_, mark_);
@@ -319,8 +319,8 @@ bool Hold::claim()
     std::vector<fs::path> claimed;
     for (const fs::path& mark : doubtful_marks_) {
         const fs::path name = revoked(mark);
-        // A missing mark was removed by its owner, which closed the journal, or was revoked by another process since it
-        // was listed; in the second case its owner may still write.
+        // Either the owner has removed a missing mark, because it closed the journal, or another process has revoked
+        // the mark since it was listed. In the second case the owner may still write.
         const bool is_revoked = name != mark && std::rename(mark.c_str(), name.c_str()) == 0;
         if (!is_revoked && name != mark && errno != ENOENT)
             fail(name.string(), ": cannot be written: ", reason_of(errno));

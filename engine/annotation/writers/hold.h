@@ -1,10 +1,10 @@
 #pragma once
-// The single writer of a journal: from opening for writing until closing, one process holds it. Two means show this:
+// The single writer of a journal. One process holds the journal, from opening to closing it, by a mark and a lock:
 //
 // - The process's own mark in the journal's folder (writer_mark.h), which no other process can create or mistake.
-//   Marks decide which process may write: one that finds the mark of a running process is refused. If it is unknown
-//   whether an owner has ended, no other process writes its file: a later one continues in a copy (`claim`).
-// - A lock of the system on JOURNAL.lock (open file description), where the file system has locks: it ends with the
+//   Marks decide which process may write: a process that finds the mark of a running process is refused. If it is
+//   unknown whether a mark's owner has ended, other processes do not write its file but continue in a copy (`claim`).
+// - A lock of the system on JOURNAL.lock (open file description), if the file system has locks. The lock ends with the
 //   process, other computers see it, and older programs know it.
 //
 // Readers need neither, and can query the holder. One thread at a time, except where stated.
@@ -21,7 +21,7 @@
 
 namespace shvr {
 
-/// Another process is writing the journal, or has written it since it was read.
+/// Thrown if another process is writing the journal, or has written it since it was read.
 class JournalTaken : public Error {
 public:
     using Error::Error;
@@ -40,8 +40,8 @@ std::string in_words(const Holder& holder);
 
 class Hold {
 public:
-    /// Fails with JournalTaken, naming the holder, if another hold (also in this process) exists on the journal. Null
-    /// if there is no journal, or if no file can be created beside it; then `error` is the reason. `program`: as in
+    /// Fails with JournalTaken, naming the holder, if the journal has another hold, even in this process. Returns null
+    /// if there is no journal, or if no file can be created next to it; then `error` is the reason. `program`: as in
     /// Holder.
     static std::shared_ptr<Hold> take(const std::filesystem::path& journal, std::string_view program, int& error);
     static std::shared_ptr<Hold> take(const std::filesystem::path& journal, std::string_view program);
@@ -50,20 +50,20 @@ public:
     Hold(const Hold&) = delete;
 
     const std::filesystem::path& journal() const { return journal_; }
-    /// False if another process has claimed the journal meanwhile. This process must then not begin to write the
-    /// journal; records that it still writes into its open file stay separate. Any thread.
+    /// False if another process has claimed the journal meanwhile. This process must then not start writing the
+    /// journal; the claim does not include what it still writes to its open file. Any thread.
     bool is_kept() const;
-    /// Another process that writes the journal now. Null if none does.
+    /// Another process that writes the journal now; null if there is none.
     std::optional<Holder> successor() const;
-    /// The name of a file in the journal's folder that no other process uses.
+    /// A file name in the journal's folder that no other process uses.
     std::filesystem::path own_name() const;
-    /// Releases the lock only, so that this process can take another hold after it has lost this one.
+    /// Releases only the lock, so that this process can take a new hold after it has lost this one.
     void unlock() { lock_.reset(); }
 
-    /// Processes that held the journal and may still hold it: this process cannot determine whether they have ended.
+    /// Processes that held the journal and may still hold it, because it is unknown here whether they have ended.
     const std::vector<Holder>& doubtful() const { return doubtful_; }
-    /// Takes the journal from the doubtful processes. False if all of them have closed it meanwhile. If true, do not
-    /// write their file: keep it under another name, put a copy in its place, and then call `end_claim`.
+    /// Takes the journal from the doubtful processes. Returns false if all of them have closed it meanwhile. If it
+    /// returns true, do not write their file: rename it, put a copy in its place, and then call `end_claim`.
     bool claim();
     void end_claim();
 
@@ -77,7 +77,7 @@ private:
     std::vector<std::filesystem::path> doubtful_marks_;
 };
 
-/// The process that holds a journal; null if there is none, or it cannot be determined.
+/// The process that holds a journal; null if there is none or it cannot be determined.
 std::optional<Holder> holder_of(const std::filesystem::path& journal);
 
 /// "scan.journal.lock" for "scan.journal".

@@ -1,5 +1,5 @@
 #pragma once
-// The content of JOURNAL.lock, which describes its holder: a line for each part. Any thread.
+// The content of JOURNAL.lock, which describes the holder: one line per property. Any thread.
 
 #include <ctime>
 
@@ -11,8 +11,8 @@ namespace shvr {
 std::string time_in_words(std::time_t time);
 
 std::string to_text(const Holder& holder);
-/// The file is untrusted: unknown lines are skipped, long parts
-/// are truncated, and unprintable characters are replaced.
+/// Reads untrusted text: skips unknown lines, truncates long values, and replaces unprintable
+/// characters.
 Holder parse_holder(std::string_view text);
 
 }  // namespace shvr

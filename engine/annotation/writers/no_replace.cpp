@@ -33,7 +33,7 @@ Renaming after_failure(const fs::path& from, const fs::path& to, int error)
     fail(to.string(), ": cannot be written, to keep ", from.filename().string(), " there: ", reason_of(error));
 }
 
-/// Reserves `to` with an empty file, then renames over it. Only for names that no other process moves meanwhile.
+/// Reserves `to` with an empty file, then renames over it. For names that no other process moves files from.
 Renaming rename_over_own(const fs::path& from, const fs::path& to)
 {
     const FileDescriptor own(::open(to.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
@@ -50,7 +50,7 @@ int rename_without_replacing(const fs::path& from, const fs::path& to)
     return ::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0 ? 0 : errno;
 }
 
-/// Copies a file to `to`, a name of this process.
+/// Copies a file to `to`, a name that only this process uses.
 void copy_to_own(const fs::path& from, const fs::path& to)
 {
     const FileDescriptor input(::open(from.c_str(), O_RDONLY | O_CLOEXEC));
@@ -74,12 +74,12 @@ Renaming move_to_free(const fs::path& from, const fs::path& to)
     const int error = rename_without_replacing(from, to);
     if (error == 0) return Renaming::done;
     if (!lacks_call(error)) return after_failure(from, to, error);
-    // Network file systems have no RENAME_NOREPLACE. A second link and unlink(2) would not do: another process may have
-    // put another file at `from` between the two.
+    // Network file systems have no RENAME_NOREPLACE. link(2) and then unlink(2) would not be safe: between the two
+    // calls, another process may put another file at `from`.
     struct stat status {};
     if (::lstat(from.c_str(), &status) != 0) return after_failure(from, to, errno);
     if (!S_ISDIR(status.st_mode)) return rename_over_own(from, to);
-    // Renaming a folder can replace an empty folder, but nothing else.
+    // Renaming a folder can replace only an empty folder, so nothing is lost.
     if (std::rename(from.c_str(), to.c_str()) == 0) return Renaming::done;
     if (errno == ENOTEMPTY || errno == ENOTDIR) return Renaming::name_taken;
     return after_failure(from, to, errno);
@@ -107,8 +107,8 @@ Renaming put_at_free(const fs::path& own, const fs::path& to)
     int error = rename_without_replacing(own, to);
     if (error == 0) return Renaming::done;
     if (!lacks_call(error)) return after_failure(own, to, error);
-    // Links instead of renaming over an empty placeholder: another process may already have moved the placeholder and
-    // put its own file there.
+    // Links, instead of renaming over an empty placeholder: another process may already have moved the placeholder and
+    // put its own file in its place.
     error = ::link(own.c_str(), to.c_str()) == 0 ? 0 : errno;
     if (error == 0) {
         ::unlink(own.c_str());  // no more than a second name

@@ -1,5 +1,5 @@
 #pragma once
-// Gives a file a name that no other file has, even if other processes move files at the same moment: checking before
+// Gives a file a name that no other file has, even if other processes move files at the same moment. A check before
 // rename(2) would leave a gap in which another process's file could be replaced. Any thread may call these.
 
 #include <filesystem>
@@ -12,16 +12,16 @@ enum class Renaming {
     gone,        ///< there is no `from`
 };
 
-/// Renames the file or folder `from`, which other processes may move at the same time. `to` must be a name that no
-/// process moves files away from. Fails only for reasons other than those of `Renaming`.
+/// Renames the file or folder `from`, which other processes may move at the same time. `to` must be a name from which
+/// no process moves files away. Fails only for reasons that `Renaming` does not list.
 Renaming move_to_free(const std::filesystem::path& from, const std::filesystem::path& to);
 
-/// Gives the file to which `from` leads the second name `to`, under which its content stays when another file replaces
-/// it. Copies it where the file system has no such links; if the process then ends meanwhile, `to` is incomplete, but
-/// `from` is as it was. Fails like `move_to_free`.
+/// Gives a file (following symbolic links from `from`) the second name `to`, under which its content stays when another
+/// file replaces it. If the file system has no hard links, copies it; if the process ends meanwhile, `to` is
+/// incomplete, but `from` is unchanged. Fails like `move_to_free`.
 Renaming link_to_free(const std::filesystem::path& from, const std::filesystem::path& to);
 
-/// Renames `own`, a name known to this process only, to `to`, from which others may move it. Fails like `move_to_free`.
+/// Renames `own`, a name only this process knows, to `to`, which others may move. Fails like `move_to_free`.
 Renaming put_at_free(const std::filesystem::path& own, const std::filesystem::path& to);
 
 }  // namespace shvr

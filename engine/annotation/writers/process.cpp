@@ -19,7 +19,7 @@ namespace shvr {
 
 namespace {
 
-/// The first bytes of a file in /proc (such files state no size); empty if the file cannot be read.
+/// The first bytes of a file in /proc, whose files report no size; empty if the file cannot be read.
 std::string text_of(const std::string& path)
 {
     const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
@@ -54,7 +54,7 @@ std::optional<uint64_t> start_of(pid_t process)
 {
     if (::kill(process, 0) != 0 && errno == ESRCH) return std::nullopt;
     const std::string text = text_of(sentence("/proc/", process, "/stat"));
-    // proc(5): the name, in parentheses, may contain any character; the state is the first field behind it.
+    // proc(5): the name is in parentheses and may contain any character; the next field is the state.
     const size_t name_end = text.rfind(')');
     if (name_end == std::string::npos) return 0;
     constexpr size_t THREADS = 17, START = 19;
@@ -62,7 +62,7 @@ std::optional<uint64_t> start_of(pid_t process)
     std::vector<std::string> fields;
     for (std::string word; fields.size() <= START && words >> word;) fields.push_back(word);
     if (fields.size() <= START) return 0;
-    // The last thread has closed its files before it becomes a zombie.
+    // A process without other threads becomes a zombie after it has closed its files, so it counts as ended.
     if ((fields[0] == "Z" || fields[0] == "X") && fields[THREADS] <= "1") return std::nullopt;
     uint64_t start = 0;
     std::istringstream(fields[START]) >> start;

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view SUFFIX = ".lock", REVOKED = ".revoked.lock";
 constexpr size_t MAX_MARK_BYTES = 4096;
 constexpr size_t MAX_HOST_BYTES = 32;
-/// Leaves room for the rest of a mark's name in the 255 bytes that a file system allows.
+/// Leaves room for the other parts of a mark's name within the 255 bytes that file systems allow.
 constexpr size_t MAX_NAME_BYTES = 120;
 
 fs::path folder_of(const fs::path& journal)
@@ -30,7 +30,7 @@ fs::path folder_of(const fs::path& journal)
     return journal.has_parent_path() ? journal.parent_path() : fs::path(".");
 }
 
-/// The prefix of the names of a journal's marks. A long journal name is cut, with its checksum (FNV-1a) appended.
+/// The start of the names of a journal's marks. A long journal name is cut, and its checksum (FNV-1a) appended.
 std::string beginning_of(const fs::path& journal)
 {
     const std::string name = journal.filename().string();
@@ -48,7 +48,7 @@ std::string plain_host()
     return host.empty() ? "unnamed" : host;
 }
 
-/// The first part of a boot's name; the name is random.
+/// The first part of the boot's name, which is random.
 std::string plain_boot()
 {
     const std::string boot = boot_name();
@@ -74,7 +74,7 @@ std::optional<Name> parse(std::string_view middle)
         parts.emplace_back(middle.substr(0, dot));
         middle.remove_prefix(std::min(dot + 1, middle.size()));
     }
-    constexpr size_t PARTS = 7;  // parts of a mark's name, including a count that only makes names unique
+    constexpr size_t PARTS = 7;  // parts of a mark's name; the last is a count that makes names unique
     if (parts.size() != PARTS) return std::nullopt;
     for (const size_t number : {1u, 3u, 4u, 5u, 6u})
         if (!whole_of(parts[number])) return std::nullopt;
@@ -86,7 +86,7 @@ WriterMark::Owner owner_of(const Name& name, const fs::path& folder)
     using enum WriterMark::Owner;
     if (name.host != plain_host()) return unknown;
     const bool is_local = is_on_local_disk(folder);
-    // In a copied folder the marks are copies, too: their names state another folder.
+    // If the folder was copied, its marks are copies, too: their names state the inode of the original folder.
     if (is_local && name.folder != sentence(inode_of(folder))) return ended;
     const std::string boot = plain_boot(), space = sentence(process_space());
     if (boot.empty() || name.boot.empty() || space == "0") return unknown;
@@ -103,7 +103,7 @@ std::string time_of(const fs::path& mark)
     return ::lstat(mark.c_str(), &status) == 0 ? time_in_words(status.st_mtim.tv_sec) : std::string();
 }
 
-/// Null if the file has been removed meanwhile.
+/// Reads a mark; null if the file has been removed meanwhile.
 std::optional<WriterMark> read_mark(const fs::path& path, const Name& name, const fs::path& folder)
 {
     const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW));
