@@ -1,5 +1,5 @@
 #pragma once
-// The choices that a file with several volumes offers, for callers that can ask the user if none was made.
+// The choices that a file with several volumes offers, for callers that can ask the user to make one.
 
 #include <string>
 #include <utility>

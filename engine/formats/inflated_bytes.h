@@ -21,8 +21,8 @@ struct Inflation {
     int64_t kept_bytes = int64_t{32} << 20;
 };
 
-/// Returns the decoded bytes, which are only decoded when read. Fails if the data has neither a gzip nor a zlib header,
-/// or is too short for the requested bytes: one byte of deflate expands to at most 1032 bytes (zlib's technical notes).
+/// Returns a source of decoded bytes, which decodes on demand. Fails if the data has neither a gzip nor a zlib header,
+/// or is too short for the requested bytes: deflate expands a byte to at most 1032 bytes (zlib's technical notes).
 std::unique_ptr<VoxelBytes> bytes_of_deflated(Inflation inflation);
 
 /// Whether `head` begins like a gzip file.

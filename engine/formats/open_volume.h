@@ -21,15 +21,15 @@ struct RawLayout {
 /// Fails with a `UsageError` that shows the form above.
 RawLayout parse_raw_layout(const std::string& text);
 
-/// The "expected ..." part of messages about an address in a place that only accepts local paths.
+/// The end of the error message for an address where only a local path is accepted.
 inline constexpr const char* NO_ADDRESS =
     "the path of a file or folder on this machine, since only volumes are read over a network";
 
 /// Whether `path`, judged by its name, is a zipped OME-Zarr (.ozx, .zip) or a path inside one. A path inside an
 /// archive, such as scan.ozx/0, does not exist in the file system. Reads nothing.
 bool leads_into_archive(const std::filesystem::path& path);
-/// Returns a message that only the image is read, for a project that was zipped as a whole or lies behind an address;
-/// empty for anything else. Reads the archive's directory, or asks the server.
+/// For a project that was zipped as a whole or lies behind an address, returns a message that only its image is read;
+/// otherwise, an empty text. Reads the archive's directory, or asks the server.
 std::string archived_project(const std::filesystem::path& path);
 
 /// Returns the name of the format that a file name implies, such as "NIfTI" for scan.nii.gz; empty if none. The file

@@ -30,7 +30,7 @@ constexpr int64_t MAX_EXPANSION = 1000;
 
 // ---- Values ---------------------------------------------------------------------------------------------------------
 
-/// Looks up values in a list of data sets, of which the first that has the value counts.
+/// Looks up values in several data sets; the first set that has a value takes precedence.
 class Values {
 public:
     explicit Values(std::vector<const DataSet*> sets) : sets_(std::move(sets)) {}

@@ -64,7 +64,7 @@ NiftiHeader parse(const Fields& fields, const Places& places)
     return header;
 }
 
-/// Returns whether `head` is big-endian; null unless it begins with the number `bytes` (348 or 540) in some byte order.
+/// Returns whether `head` is big-endian; null if it does not begin with `bytes` (348 or 540) in either byte order.
 std::optional<bool> byte_order(std::string_view head, int32_t bytes)
 {
     if (head.size() < size_t(bytes)) return {};

@@ -72,7 +72,7 @@ std::vector<std::optional<glm::dvec3>> axis_directions(const HeaderFields& field
     return directions;
 }
 
-/// Returns whether the non-spatial one of four axes is the first (true) or the last (false). Fails if it is unclear.
+/// Returns whether the non-spatial axis is the first of four axes (true) or the last (false). Fails if that is unclear.
 bool first_is_not_space(const HeaderFields& fields)
 {
     constexpr const char* EXPECTED = "3, or 4 with kinds or space directions that say which axis is none of space";

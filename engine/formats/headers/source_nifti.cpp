@@ -1,4 +1,4 @@
-// NIfTI-1 and NIfTI-2: .nii, .nii.gz, and pairs of .hdr and .img, in which either file may be compressed.
+// Opens NIfTI-1 and NIfTI-2: .nii, .nii.gz, and pairs of .hdr and .img, either of which may be compressed.
 
 #include <cmath>
 #include <utility>

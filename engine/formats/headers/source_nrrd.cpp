@@ -1,5 +1,5 @@
-// NRRD, versions 1 to 6 (http://teem.sourceforge.net/nrrd/format.html): voxels raw or compressed with gzip; in the
-// header's own file, in another file, or in several files.
+// Opens NRRD, versions 1 to 6 (http://teem.sourceforge.net/nrrd/format.html). Voxels may be raw or compressed with
+// gzip, and in the header's own file, in another file, or in several files.
 
 #include <utility>
 
@@ -107,7 +107,7 @@ RawVoxels::Part place_in(const HeaderFields& fields, const std::filesystem::path
     constexpr int64_t MOST = int64_t{1} << 62;
     const char* const byte_skip = fields.has("byteskip") ? "byteskip" : "byte skip";
     const char* const line_skip = fields.has("lineskip") ? "lineskip" : "line skip";
-    // -1: at the end of the file, which is unknown for compressed data. Lines are skipped before decompression.
+    // Byte skip -1 stands for the end of the file, except in compressed data. Lines are skipped before decompression.
     const int64_t bytes = fields.whole(byte_skip, 0, deflated ? 0 : -1, MOST);
     if (bytes == RawVoxels::AT_END) return {file, RawVoxels::AT_END};
     const int64_t begin = skip_lines(fields, file, from, fields.whole(line_skip, 0, 0, MOST));
@@ -144,7 +144,7 @@ RawVoxels place_voxels(const NrrdHeader& header, const VolumeInfo& info)
 }
 
 /// Warns if the file states a former range of values, as writers do that quantize values (teem's "unu quantize"). The
-/// stored numbers may be meant as they are, so the range is not applied.
+/// range is only reported, since the stored numbers may be the intended values.
 void warn_of_old_range(const HeaderFields& fields, VolumeInfo& info)
 {
     for (const auto& [lower, upper] : {std::pair{"old min", "old max"}, std::pair{"oldmin", "oldmax"}}) {

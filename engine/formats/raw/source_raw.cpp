@@ -101,7 +101,7 @@ std::string size_text(const VolumeInfo& info, const RawVoxels& voxels)
                     voxels.channels > 1 ? sentence(voxels.channels, " times ") : std::string(), name_of(info.type));
 }
 
-/// Checks that `file` holds `needed` bytes at `offset`, then `after` more. Resolves and returns `offset` (AT_END).
+/// Checks that `file` holds `needed` bytes at `offset`, then `after` more. Returns `offset`, with AT_END resolved.
 int64_t place_in_file(const InputFile& file, int64_t offset, int64_t needed, int64_t after, const std::string& of_what)
 {
     const int64_t all = (offset == RawVoxels::AT_END ? 0 : offset) + needed + after;

@@ -1,4 +1,4 @@
-// Raw voxels and the files stored next to them. For scan.raw these are, in this order:
+// Opens raw voxels with the help of files next to them. For scan.raw, these are tried in the following order:
 //   scan.json, scan.raw.json   our own: {"size": [x,y,z], "type": "int16", "endian": "little", "offset": 0,
 //                              "spacing": [x,y,z], "unit": "um"}; size and type are required
 //   scan.nhdr, scan.mhd        if they name this file

@@ -55,7 +55,7 @@ public:
 
 private:
     static void leave(j_common_ptr jpeg) { std::longjmp(static_cast<JpegPicture*>(jpeg->client_data)->on_error_, 1); }
-    /// Turns warnings about damaged pixels into errors; libjpeg by itself would only print them.
+    /// Turns warnings about damaged pixels into errors; libjpeg by itself would continue.
     static void note(j_common_ptr jpeg, int level)
     {
         if (level < 0 && jpeg->err->msg_code != JWRN_EXTRANEOUS_DATA) leave(jpeg);

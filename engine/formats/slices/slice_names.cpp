@@ -91,7 +91,7 @@ std::string series_of(const SliceName& name, size_t last_number)
     return series;
 }
 
-/// If only one pattern has several files, removes the files of other patterns, which are single pictures and no slices.
+/// If only one pattern has several files, removes the files of other patterns, which are single pictures, not slices.
 void remove_odd_pictures(const DiffersInSize& differs, std::vector<SliceName>& names,
                          std::vector<std::string>& warnings)
 {

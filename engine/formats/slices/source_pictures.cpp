@@ -31,7 +31,7 @@ const char* name_of(SliceFormat format)
 }
 
 /// Caches decoded slices, because bricks need a part of each slice but pictures can only be decoded from their first
-/// row on. Evicts at random: a repeated pass through a volume would need just the slices that LRU has evicted.
+/// row on. Evicts at random: a repeated pass through a volume would need exactly the slices that LRU has evicted.
 class SliceCache {
 public:
     using Slice = std::shared_ptr<const std::vector<std::byte>>;

@@ -190,7 +190,7 @@ std::shared_ptr<TiffBlockCache::Entry> TiffBlockCache::entry_of(const Key& key)
 void TiffBlockCache::keep(const Key& key, const std::shared_ptr<Entry>& entry)
 {
     const std::lock_guard lock(mutex_);
-    // Evicts at random: a repeated pass through a large volume would need just the blocks that LRU has evicted.
+    // Evicts at random: a repeated pass through a large volume would need exactly the blocks that LRU has evicted.
     while (!kept_.empty() && kept_bytes_ + entry->block.size() > MAX_BYTES) {
         random_ = random_ * 1664525u + 1013904223u;
         std::swap(kept_[random_ % kept_.size()], kept_.back());

@@ -175,7 +175,7 @@ private:
         return axis == 'Z' ? result_.slices : axis == 'C' ? result_.channels : result_.frames;
     }
 
-    /// Returns the index in `pages` of plane number `plane`, counted in the order DimensionOrder.
+    /// Returns the index in `pages` of plane number `plane`, counted in the order that DimensionOrder states.
     size_t place_of(int64_t plane) const
     {
         int64_t at[3] = {};  // Z, C, T

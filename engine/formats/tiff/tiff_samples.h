@@ -7,7 +7,7 @@
 
 namespace shvr {
 
-/// Which part of the pages a volume uses, and how its samples are converted to voxels.
+/// The part of the pages that a volume uses, and the conversion of its samples to voxels.
 struct TiffRecipe {
     VoxelType type = VoxelType::uint8;
     int sample = 0;          ///< index within the pixel

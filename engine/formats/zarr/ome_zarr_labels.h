@@ -1,5 +1,5 @@
 #pragma once
-// Reads what an OME-Zarr label image says about its labels (https://ngff.openmicroscopy.org/0.5/#labels-md; the same in
+// Reads the label descriptions of an OME-Zarr label image (https://ngff.openmicroscopy.org/0.5/#labels-md; same in
 // 0.4): "image-label" with "colors" [{"label-value", "rgba"}] and "properties" [{"label-value", "name", ...}]. Any
 // thread may call these functions.
 

@@ -49,7 +49,7 @@ glm::dmat3 read_matrix(const JsonNode& node)
     return {rows[0].vector(any_number()), rows[1].vector(any_number()), rows[2].vector(any_number())};
 }
 
-/// Reads where a value comes from. Projects by older versions lack this key; their values count as the file's.
+/// Reads the provenance of a value. Projects by older versions lack this key; their values count as the file's.
 Provenance read_provenance(const JsonNode& node)
 {
     constexpr std::array<std::string_view, 3> NAMES{"assumed", "file", "given"};

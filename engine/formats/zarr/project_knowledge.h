@@ -1,6 +1,6 @@
 #pragma once
-// What a project folder states about its volume, in addition to the voxels. All of it is optional, and unreadable parts
-// are ignored. For source_ome_zarr.cpp.
+// The data that a project folder states about its volume, in addition to the voxels. All of it is optional, and
+// unreadable parts are ignored. For source_ome_zarr.cpp.
 
 #include <filesystem>
 #include <optional>

@@ -1,6 +1,6 @@
-// OME-Zarr images, versions 0.1 to 0.4 (Zarr version 2) and 0.5 (Zarr version 3), and bare Zarr arrays, in a local
-// folder or an archive (zarr_store.h). A project is such an image with an added folder shvr/ (project.h) that holds
-// ranges and statistics.
+// Opens OME-Zarr images, versions 0.1 to 0.4 (Zarr version 2) and 0.5 (Zarr version 3), and bare Zarr arrays, in a
+// local folder, an archive or below an address (zarr_store.h). A project is such an image with an additional folder
+// shvr/ (project.h) that holds ranges and statistics.
 //
 // Levels are the datasets that are aligned with level 0 as source.h requires: each level is twice as coarse as the one
 // before, along every axis. Other datasets are left out, with a warning.

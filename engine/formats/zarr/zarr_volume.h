@@ -1,5 +1,5 @@
 #pragma once
-// A volume inside a Zarr array: three of the array's axes, at a fixed index along the others. It is read in chunks.
+// A volume inside a Zarr array: three of the array's axes, at a fixed index along the others. Reads whole chunks.
 //
 // A missing chunk holds the fill value; a chunk that cannot be read or decoded causes an `Error` with its path. Chunks
 // at the end of an axis have the full size, and their part outside the array is ignored. Any thread may call these.

@@ -48,7 +48,7 @@ public:
 
     /// Whether every access takes long, so that many should run in parallel, and values cannot be listed.
     virtual bool is_remote() const { return false; }
-    /// Reads values ahead, in parallel, for later read, read_part and read_edge, which also report failures.
+    /// Reads values ahead, in parallel, for later calls of read, read_part and read_edge, which report failures.
     virtual void prepare(std::span<const ZarrWant>) const {}
 
     /// Calls `take` with every key that begins with `prefix` (empty, or ending with a slash), in no particular order
@@ -61,7 +61,7 @@ public:
     bool lacks(const std::string& key) const;
 };
 
-/// Where a group or an array is: a store, and the prefix of its keys.
+/// The place of a group or an array: a store, and the prefix of its keys.
 struct ZarrPlace {
     std::shared_ptr<const ZarrStore> store;
     std::string prefix{};  ///< "", or ends with a slash
