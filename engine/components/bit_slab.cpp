@@ -14,7 +14,7 @@ constexpr int64_t STRIP_BYTES = int64_t{1} << 20;
 constexpr int64_t MAX_BIT_BYTES = int64_t{64} << 20;
 constexpr int64_t WORD = 64;
 
-/// Returns the columns of the run of blocks that starts with `block`, and moves `block` past that run.
+/// Returns the columns of the run of adjacent blocks that starts with `block`, and moves `block` past that run.
 template <class Block>
 BitLayout::Columns touching(Block& block, Block end, const StoredBlocks& stored, int64_t width)
 {

@@ -10,7 +10,7 @@
 
 namespace shvr {
 
-/// Which rows and columns of each slice have bits: those that can hold voxels at or above the threshold.
+/// The rows and columns of each slice that have bits: those that can hold voxels at or above the threshold.
 class BitLayout {
 public:
     struct Columns {

@@ -23,7 +23,7 @@ struct ComponentOptions {
     double threshold = 0.0;  ///< inclusive, in intensity units; not NaN
     Connectivity connectivity = Connectivity::faces;
     int64_t fewest_voxels = 1;   ///< smaller components are dropped
-    int64_t max_components = 0;  ///< keeps only the largest components; of equal ones, the first; 0: all
+    int64_t max_components = 0;  ///< keeps this many of the largest components; of equal ones, the first; 0: all
     int threads = 0;             ///< 0: one per core
     /// Folder for a temporary file. If unset, no labels are kept, and `labels` must not be called.
     std::optional<std::filesystem::path> run_folder{};
