@@ -334,7 +334,7 @@ void record_use(const PassData& pass, std::vector<ResourceState>& states)
     }
 }
 
-/// Transient resources that no later pass uses, whose memory equal resources with a later first use can take over.
+/// Transient resources that no later pass uses. Equal resources that are first used later can take over their memory.
 class FreeMemory {
 public:
     FreeMemory(const FrameGraph& graph, const std::vector<bool>& alive)

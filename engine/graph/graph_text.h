@@ -15,7 +15,7 @@ std::string to_text(const Barrier& barrier);
 /// resources, with a double line if they outlive the frame. Culled passes and resources are dashed and grey.
 std::string to_graphviz(const FrameGraph& graph, const CompiledGraph& compiled);
 
-/// {"passes": [...], "resources": [...]}; README.md lists the keys.
+/// Returns {"passes": [...], "resources": [...]}; README.md lists the keys.
 std::string to_json_text(const FrameGraph& graph, const CompiledGraph& compiled);
 
 }  // namespace shvr
