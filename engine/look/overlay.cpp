@@ -15,7 +15,7 @@ constexpr double TRACE_WIDTH = 2.5;  ///< for highlighted parts of the trace
 constexpr double HALO = 2.0;         ///< pixels added around a stroke, to set it off from what is behind it
 constexpr double DASH = 5.0, GAP = 4.0;
 constexpr glm::dvec3 DARK(0.02);
-/// Colours of the axes x, y and z. All four are also used for the frustum's edges away from the eye.
+/// Colours of the axes x, y and z. All four also colour the frustum edges that lead away from the eye.
 constexpr std::array<glm::dvec3, 4> COLORS{glm::dvec3(0.87, 0.05, 0.03), glm::dvec3(0.05, 0.55, 0.08),
                                            glm::dvec3(0.06, 0.22, 0.95), glm::dvec3(0.95, 0.45, 0.02)};
 
@@ -216,7 +216,7 @@ void add_trace(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, con
     for (const OverlayScene::Ball& ball : scene.balls) add_ball(strokes, pane, pixels, ball);
 }
 
-/// Draws a box's edges in the colours of their axes: solid if they are visible from outside, otherwise stippled.
+/// Draws a box's edges in the colours of their axes: solid if an adjacent face faces the viewer, stippled if not.
 void add_box(Strokes& strokes, const Camera& camera, const glm::uvec2& pixels, const OverlayScene::Box& box)
 {
     const CameraAxes axes = axes_of(camera);
