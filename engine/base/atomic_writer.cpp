@@ -52,7 +52,7 @@ std::atomic<const char*>* list(const char* name)
 
 constexpr std::string_view PREFIX = ".shvr-", SUFFIX = ".tmp";
 constexpr std::chrono::hours FOREIGN_AGE{24};
-/// A long append syncs each time after this many bytes, so that the final sync, which cannot be interrupted, is short.
+/// A long append syncs after every BYTES_PER_SYNC bytes, so that the final, uninterruptible sync does not take long.
 constexpr uint64_t BYTES_PER_SYNC = uint64_t{64} << 20;
 
 /// Returns the host's name with only those characters that are safe in a file name.

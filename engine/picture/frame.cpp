@@ -62,7 +62,7 @@ struct Prepared {
     std::optional<SurfaceList> listed;
 };
 
-/// Adds the passes in the first half of the list at the top of frame.h.
+/// Adds the passes of the first rows of the list at the top of frame.h: volume, occlusion and tables.
 Prepared prepare(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, const PicturePart& part,
                  bool feedback, bool rays_wait = false)
 {

@@ -26,7 +26,7 @@ void append(std::vector<gpu::PassReport>& sum, std::vector<gpu::PassReport> pass
         known->submissions += pass.submissions;
         known->dispatches += pass.dispatches;
         known->tiles += pass.tiles;
-        // Within one pass, some kernels have counters and others do not (slice.comp).
+        // Some kernels of a pass have counters, while others have none (slice.comp), so the number of counters varies.
         known->counters.resize(std::max(known->counters.size(), pass.counters.size()));
         for (size_t i = 0; i < pass.counters.size(); ++i) known->counters[i] += pass.counters[i];
         known->invocations = known->invocations && pass.invocations
@@ -60,7 +60,7 @@ uint64_t device_bytes_per_pixel(const Scene& scene, const Shot& shot, const std:
     return PIXEL_BYTES + (shot.right_eye ? 2 * (PIXEL_BYTES + of_eye) : of_eye);
 }
 
-/// Splits rows of a pane into parts of at most `side` pixels, in reverse order: the first part to draw comes last.
+/// Splits rows of a pane into parts of at most `side` x `side` pixels, in reverse order: the first to draw comes last.
 std::vector<PicturePart> parts_of(const PicturePart& whole, const PixelBox& rows, uint32_t side)
 {
     std::vector<PicturePart> parts;

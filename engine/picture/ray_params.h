@@ -15,7 +15,7 @@ gpu::RaycastParams raycast_params(const Look& look, const Camera& camera, Scene&
 /// Sets the parameters that depend on the camera: rays, their entry points into the volume, light and depth.
 void set_rays(gpu::RaycastParams& params, const Look& look, const Camera& camera, const VolumeInfo& info,
               const glm::uvec2& pixels);
-/// Sets the parameters of a slice, which shows the whole volume in grey, ignoring cuts.
+/// Sets the parameters of a slice, which shows all voxels in grey, ignoring the cutting planes.
 void set_slice(gpu::RaycastParams& params, const Look& look, Scene& scene);
 void set_shell(RaycastInput& input, const ProbeLook& probe, Scene& scene);
 void set_ball(gpu::SurfaceParams& params, const ProbeLook& probe, const VolumeInfo& info);

@@ -46,7 +46,7 @@ public:
         /// Memory limits. Half of the host bytes (0: 2 GiB) are for mapped memory, a quarter for bricks cached on the
         /// host, and a quarter for coarser levels, which are made in memory for files without levels.
         gpu::Budget budget;
-        int threads = 0;  ///< workers that build bricks; 0: one per core
+        int threads = 0;  ///< worker threads that build bricks; 0: one per core
     };
     explicit Renderer(const Options& options);
 
@@ -120,8 +120,8 @@ private:
     gpu::DeviceOptions device_options_;
     uint64_t device_budget_, host_budget_;
     int threads_;
-    mutable std::mutex device_mutex_;  ///< guards on_device_: a worker calls with_levels() while restart() re-creates
-                                       ///< the device
+    mutable std::mutex device_mutex_;  ///< guards on_device_: with_levels() runs on a worker, even during restart(),
+                                       ///< which re-creates the device
     std::unique_ptr<OnDevice> on_device_;
     uint64_t picture_bytes_ = 0, peak_picture_bytes_ = 0;
     std::unique_ptr<Scene> scene_;

@@ -55,7 +55,7 @@ public:
     {
         services_.hand.use_device(std::move(device), name);
     }
-    /// Sets a function that is called with each action carried out, as a line that replays it (actions/action_rows.h).
+    /// Sets a function that receives each action carried out, as a line that replays it (actions/action_rows.h).
     void log_to(std::function<void(const std::string& line)> log) { desk_.log = std::move(log); }
 
     // ---- Steps of the main loop
@@ -125,7 +125,7 @@ public:
     bool shows_full_screen() const { return services_.window.is_full_screen(); }
     /// Returns how many voxels the preview showed when the last stroke began; null if no preview was shown.
     std::optional<int64_t> previewed_at_stroke() const { return services_.painter.previewed_at_stroke(); }
-    /// Time when the open document was opened, and the number of documents opened so far.
+    /// opened_s(): when the open document was opened. openings(): how many documents were opened so far.
     double opened_s() const { return desk_.opened_s; }
     uint64_t openings() const { return desk_.openings; }
 

@@ -43,7 +43,7 @@ inline constexpr bool IS_ACTION = false;
 template <class Kind, class... Rows>
 inline constexpr bool IS_ACTION<Kind, std::tuple<Rows...>> = (std::is_same_v<Kind, typename Rows::Kind> || ...);
 
-/// Index of the row of a kind of action.
+/// Index of the row for the struct `Kind`, among the rows of all tables.
 template <class Kind, class Rows = ActionRows>
 inline constexpr size_t INDEX_OF_KIND = 0;
 template <class Kind, class... Rows>
@@ -76,7 +76,7 @@ public:
     {
         return is<Kind>() ? static_cast<const Kind*>(kind_.get()) : nullptr;
     }
-    /// Calls `visitor` with the struct; `visitor` accepts each kind and returns the same type for all.
+    /// Calls `visitor` with the struct. The visitor must accept every kind, and return the same type for each.
     template <class Visitor>
     auto visit(const Visitor& visitor) const
     {

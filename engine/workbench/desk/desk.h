@@ -30,7 +30,7 @@ struct WorkbenchOptions {
     /// Folder for preferences, saved transfer functions and the user's copy of the example; empty: there is none.
     std::filesystem::path settings{};
     bool has_preferences = true;      ///< false: uses default preferences, and saves no changes of them
-    std::function<double()> now_s{};  ///< seconds of any clock; null: the system's
+    std::function<double()> now_s{};  ///< returns the seconds of any clock; null: uses the system's clock
     std::string version{};            ///< the program's, for reports; empty: unknown
     DeviceSource devices{};           ///< source of haptic devices; if its functions are empty: this machine
     /// Slices follow a probe that leaves their plane, and their move is logged; false: only logged actions move slices.

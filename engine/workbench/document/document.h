@@ -64,8 +64,8 @@ struct Document {
     std::string outside;                ///< files that the session may not write, since they are outside its folder;
                                         ///< empty: none, or the user has agreed (annotation_files.h)
     bool drags_node = false;            ///< the selection follows the probe
-    glm::dvec3 drag_from{0.0};          ///< position of the tools when the drag began, in voxels. If one node is
-                                        ///< selected, it moves to the probe; several parts move by the same offset
+    glm::dvec3 drag_from{0.0};          ///< position of the tools when the drag began, in voxels:
+                                        ///< one selected node moves to the probe, several parts by the same offset
 
     // State of the open document that is not part of the work
     std::optional<glm::dvec3> measuring_from;               ///< first end of a measurement that lacks its second end

@@ -1,5 +1,5 @@
 #pragma once
-// The view: cameras, cutting and clipping planes, slices, and picking.
+// What the view shows: cameras, cutting and clip planes, slices; also picks points in the picture.
 
 #include "engine/workbench/desk/service.h"
 

@@ -42,7 +42,7 @@ std::vector<StylusPoint> play_stylus(const Trace& trace, const GuideSettings& gu
         force.finds_middle = guide.feel.at_proxy;
     }
     ReplayOptions how;
-    how.relevance_anew = true;  // recompute it from the present threshold, groups and voxels
+    how.relevance_anew = true;  // computes relevance from the present threshold, groups and voxels
     if (by_hand) how.touch = TouchModel{};
     const FeltLimits limits = trace.feels_seen ? guide.limits : limits_of_groups(guide.feel.groups);
     const MakeRelevance make = [&](const RegionWish& wish, double threshold, RelevancePatch& patch) {
