@@ -64,7 +64,7 @@ int exchange_names(const fs::path& one, const fs::path& other)
     return ::renameat2(AT_FDCWD, one.c_str(), AT_FDCWD, other.c_str(), RENAME_EXCHANGE);
 }
 
-/// Tests whether the file system can exchange two names, by exchanging those of two empty folders.
+/// Tests whether the file system can exchange two names, by trying it with two empty folders.
 bool exchanges_names(const fs::path& container, const fs::path& target)
 {
     const fs::path one = container / "one", other = container / "other";
@@ -127,7 +127,7 @@ AtomicFolder::~AtomicFolder()
     remove_remains();
 }
 
-/// Fails if the folder was moved during writing. Then the writer has made new folders at the old place: removes these.
+/// Fails if the folder was moved during writing, after removing the new folders that writing has made at the old place.
 void AtomicFolder::expect_in_place()
 {
     struct stat held {

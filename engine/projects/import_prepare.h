@@ -35,7 +35,7 @@ inline constexpr int MAX_DOWNSCALE = 64;
 /// Describes `options`, as in "cropped to ..., reversed"; empty if they change nothing.
 std::string to_text(const PreparationOptions& options);
 
-/// Returns the weights of a Gaussian from its centre outwards; those of both sides sum to 1. For a sigma of 0: {1}.
+/// Returns the weights of a Gaussian from its centre outwards. The weights on both sides sum to 1. For sigma 0: {1}.
 std::vector<double> gaussian_weights(double sigma_voxels);
 
 class Preparation {

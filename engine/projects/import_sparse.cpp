@@ -73,7 +73,7 @@ public:
     }
 
 private:
-    /// Removes from `rest`, and returns, its first chunks: those with the same ancestor `levels` levels above.
+    /// Removes the first chunks with a common ancestor `levels` levels above from `rest`, and returns them.
     static std::span<const Size3> take_below(std::span<const Size3>& rest, int levels)
     {
         const Size3 above = ancestor(rest.front(), levels);

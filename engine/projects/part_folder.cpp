@@ -63,7 +63,7 @@ bool is_zarr(const fs::path& folder)
     return std::ranges::any_of(METADATA, [&](const char* name) { return is_there(folder / name); });
 }
 
-/// Whether SHVR or Zarr may put such an entry directly into a project: metadata, arrays, groups, chunks, or shvr.
+/// Whether SHVR or Zarr may put an entry with this name into a project: metadata, arrays, groups, chunks, or shvr.
 bool belongs_to_zarr(const fs::path& path)
 {
     const std::string name = path.filename().string();

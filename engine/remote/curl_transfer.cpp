@@ -20,7 +20,7 @@ constexpr size_t MAX_HEADER_BYTES = size_t{64} << 10;
 /// The body of an error is read up to this size, since a connection can be reused only if its response was read fully.
 constexpr int64_t MAX_ERROR_BYTES = int64_t{16} << 10;
 
-/// Returns the file of certificates that the user has set; null: those of the system.
+/// Returns the file of certificates that the user has set; null: the system's certificates are used.
 const char* certificates()
 {
     for (const char* const name : {"CURL_CA_BUNDLE", "AWS_CA_BUNDLE", "SSL_CERT_FILE"})

@@ -27,7 +27,7 @@ std::filesystem::path offsets_beside(const std::filesystem::path& mask);
 /// Like offsets_beside, for the trace, with `.graphml`.
 std::filesystem::path trace_beside(const std::filesystem::path& mask);
 
-/// Sets the paths of all annotation files of a session to those for a session file NAME.json. They need not exist.
+/// Sets a session's annotation paths to the default names for a session file NAME.json. The files need not exist.
 void name_annotation(Session& session, const std::filesystem::path& session_file);
 /// The extensions of all files of a session NAME.json: those of `name_annotation`, and those of older sessions. A name
 /// is free only if no file with any of these extensions exists.

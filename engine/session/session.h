@@ -186,7 +186,7 @@ struct OpenedSession {
     Session session;
     std::shared_ptr<const VolumeSource> source;
     VolumeStatistics statistics;
-    std::vector<std::string> warnings;   ///< about the session; those about the volume are in `source->info().warnings`
+    std::vector<std::string> warnings;   ///< about the session; `source->info().warnings` are about the volume
     std::vector<std::string> losses;     ///< saved data that is missing
     std::filesystem::path pictured{};    ///< for a picture: the session or project from which it was made; otherwise
                                          ///< empty

@@ -45,7 +45,7 @@ size_t otsu_split(const std::vector<int64_t>& histogram)
     return best_split;
 }
 
-/// Returns how many bins from `first` on are needed to hold a `share` of all voxels in these and higher bins.
+/// Returns the end of the bins that, counted from `first`, hold at least a `share` of the voxels from `first` on.
 size_t quantile_split(const std::vector<int64_t>& histogram, size_t first, double share)
 {
     const auto begin = histogram.begin() + std::ptrdiff_t(first);
@@ -95,7 +95,7 @@ ValueRange automatic_contrast(const VolumeStatistics& statistics)
     const std::vector<int64_t>& histogram = statistics.histogram;
     if (!(lower < upper) || histogram.size() < 4) return contrast_between(lower, upper);
     const double bin = (upper - lower) / double(histogram.size());
-    const size_t dark = quantile_split(histogram, 0, DARK_SHARE);  // so the last of these bins is not empty
+    const size_t dark = quantile_split(histogram, 0, DARK_SHARE);  // the bins before `dark` hold 0.5 % of the voxels
     const size_t bright = quantile_split(histogram, 0, 1.0 - BRIGHT_SHARE);
     const double black = lower + bin * double(dark > 0 ? dark - 1 : 0), white = lower + bin * double(bright);
     return contrast_between(black, std::max(white, black + 2.0 * bin));

@@ -474,7 +474,7 @@ void fields(Fields& f, SurfaceLook& surface)
 
 namespace {
 
-/// The fields of the look, separate from those of the cuts because other sections lie between the two in a file.
+/// The fields of the look, except for cuts: in a file, other sections lie between the look and the cuts.
 void look_fields(Fields& f, Session& session)
 {
     f.section("transfer_function", [&](Fields& transfer) { transfer_fields(transfer, session); });

@@ -182,7 +182,7 @@ std::string in_words(const ChangedKey& changed)
     return sentence(path, " ", changed.from, " to ", changed.to);
 }
 
-/// Describes the difference of a section by its name and, if only a few values differ, by these.
+/// Describes the difference of a section: its name and, if only a few values differ, the names of these values.
 std::string difference_of(std::string name, const std::string& before, const std::string& after)
 {
     constexpr size_t MOST = 3;
@@ -225,7 +225,7 @@ SettingValues lasting_settings(const Session& session)
 
 SettingValues kept_settings(const Session& session)
 {
-    // A copy, as above, but without the surfaces: these may be many, and this function is called often.
+    // A copy, as above, but without surfaces: there may be many of them, and this function is called often.
     Session written;
     take_kept_sections(written, session);
     return sections_of(Writer::write({}, [&](Fields& f) { kept_fields(f, written); }));

@@ -89,7 +89,7 @@ std::filesystem::path preset_file(const std::filesystem::path& folder, const std
     return folder / (name + ".json");
 }
 
-/// Rounds colours to 8 bits per channel, since files store these; does not round `at`.
+/// Rounds colours to 8 bits per channel, as files store them. Does not round fractions (`at`).
 TransferPreset preset_of(const TransferFunction& function, const std::string& name, const VolumeStatistics& statistics)
 {
     const TissueRange tissue = tissue_range(statistics);

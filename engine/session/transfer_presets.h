@@ -22,7 +22,7 @@ std::vector<TransferPreset> transfer_presets();
 std::vector<TransferPreset> own_transfer_presets(const std::filesystem::path& folder,
                                                  std::vector<std::string>& warnings);
 TransferPreset read_transfer_preset(const std::filesystem::path& file);
-/// Returns a preset that gives the function again, except for rounding, in a volume with these statistics.
+/// Returns a preset from which transfer_function_of() restores the function for this volume, except for rounding.
 TransferPreset preset_of(const TransferFunction& function, const std::string& name, const VolumeStatistics& statistics);
 /// Returns the JSON of a preset, which `parse_transfer_preset` reads.
 std::string text_of(const TransferPreset& preset);

@@ -47,7 +47,7 @@ class StudyRandom {
 public:
     explicit StudyRandom(uint64_t seed) : random_(seed) {}
     double unit();    ///< 0 <= result < 1
-    double normal();  ///< mean 0, standard deviation 1, within +-6: the sum of twelve uniform numbers
+    double normal();  ///< normal distribution: mean 0, standard deviation 1, cut at +-6 (sum of twelve uniform numbers)
     bool happens(double probability) { return unit() < probability; }
     size_t below(size_t count) { return size_t(unit() * double(count)); }
 

@@ -94,7 +94,7 @@ private:
         return false;
     }
 
-    /// Links the selected node to an existing one, which closes a loop, and selects the latter.
+    /// Links the selected node to `node`, which closes a loop, and then selects `node`.
     std::optional<uint32_t> join(uint32_t node)
     {
         if (!exists(node) || !pick(node, true)) return std::nullopt;

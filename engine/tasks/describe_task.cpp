@@ -31,7 +31,7 @@ DescribeResult run(const DescribeTask& task, ProgressReporter& reporter)
     const OpeningOptions opening{.measure = {.exact = task.exact,
                                              .progress = reporter.begin("measuring " + task.input.string()),
                                              .gaps = &gaps}};
-    // For a bare volume, opening a session would compute and report a transfer function that is not needed.
+    // Opening a bare volume as a session would compute a transfer function, which is not needed here.
     if (is_bare) {
         if (task.settings.empty()) {
             opened.source = open_volume(task.input);

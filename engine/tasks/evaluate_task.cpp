@@ -50,7 +50,7 @@ bool is_bare_mask(const fs::path& path)
     return path.extension() == ".mask";
 }
 
-/// "group 3", "groups 1, 2 and 255"; long lists are truncated.
+/// Formats groups as "group 3" or "groups 1, 2 and 255". Truncates long lists.
 std::string groups_in_words(const std::map<uint8_t, int64_t>& voxels)
 {
     constexpr size_t MAX_NAMED = 8;

@@ -31,7 +31,7 @@ struct ExportTask {
     bool break_loops = false;  ///< removes loops of the trace, for formats that can only hold trees
     Positions space = Positions::physical;
     std::optional<OmeZarrVersion> version;
-    std::string sections;  ///< for `metrics`: the groups of a flower head's parts, as head_sections() reads them
+    std::string sections;  ///< for `metrics`: the groups of a flower head's parts, parsed by head_sections()
 
     OptionNames names = OptionNames::keys;  ///< how messages name options; not an option itself
 };
@@ -50,7 +50,7 @@ struct AnnotationView {
     std::filesystem::path project{};      ///< path that the user opened; for `labels`
     std::filesystem::path volume_path{};  ///< see Session::volume_path; no output may replace it
     std::filesystem::path trace_path{};   ///< see Session::trace_path; used in messages if there is no trace
-    std::filesystem::path mask_path{};    ///< the mask whose header an export keeps (mask_segments.h); may be missing
+    std::filesystem::path mask_path{};    ///< mask file whose header an export keeps (mask_segments.h); may be missing
 };
 
 /// An independent copy of the annotation. Any thread may read and destroy it.

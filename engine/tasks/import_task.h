@@ -18,7 +18,7 @@ struct ImportTask {
     std::string raw;      ///< layout of bare voxels, in the form of `parse_raw_layout`
     OpenOptions choice;   ///< spacing, unit, channel, frame
     std::optional<OmeZarrVersion> version;
-    bool shards = false;  ///< stores many chunks per file; version 0.5 only
+    bool shards = false;  ///< stores many chunks per file; OME-Zarr 0.5 only
     bool overwrite = false;
     bool allows_incomplete = false;  ///< gives voxels that cannot be read the lowest value of their type, or NaN
     int threads = 0;

@@ -129,7 +129,7 @@ public:
         });
     }
 
-    /// Excludes up to MAX_FILL_VALUES outermost values if all satisfy `are_fill(value, gap)`; gap: in ranges.
+    /// Excludes the outermost values, up to MAX_FILL_VALUES, if `are_fill(value, gap / range)` is true for all of them.
     template <class AreFill>
     bool exclude_fill(double other_end, const AreFill& are_fill)
     {

@@ -58,7 +58,7 @@ public:
     void build(int levels, const Progress& progress)
     {
         double begun = 0.0;
-        // Progress is divided in proportion to the voxels: each level has an eighth of those of the previous one.
+        // Progress is divided in proportion to voxels: each level has an eighth of the voxels of the previous level.
         for (double share = 0.875; this->levels() < levels; share /= 8.0) {
             coarse_.push_back(halved<T>(*this, this->levels() - 1, part_of(progress, begun, begun + share)));
             begun += share;

@@ -18,8 +18,8 @@
 
 namespace shvr {
 
-/// The stored blocks of a level, most of which may be absent, as in a sparse file. Work on such a level should only
-/// take time for stored blocks.
+/// The stored blocks of a level in which most blocks may be absent, as in a sparse file. Work on such a level need only
+/// visit the stored blocks.
 struct StoredBlocks {
     Size3 block{1};                    ///< size in voxels; block i covers [i * block, (i + 1) * block)
     double fill = 0.0;                 ///< value of all voxels in no block; may be infinite or NaN
@@ -35,7 +35,7 @@ struct OpenOptions {
     /// Replaces or provides the spacing of the file (engine/formats/restated.h).
     std::optional<glm::dvec3> spacing{};
     std::string unit{};  ///< empty: the file's
-    /// Value of voxels without data; infinite: no such value; null: the value is detected (outliers.h).
+    /// Value of voxels without data; infinite: there is no such value; null: detected automatically (outliers.h).
     std::optional<double> nodata{};
     bool operator==(const OpenOptions&) const = default;
 };
@@ -61,8 +61,8 @@ public:
     /// Like `read`, for any level.
     virtual void read_level(int level, const VoxelBox& box, std::span<std::byte> voxels) const;
     /// Returns the range of the values of a brick of `level` (gpu::BRICK_SIZE voxels a side, counted from voxel 0) and
-    /// one voxel of `level` around it, without reading voxels. The range holds for the voxels there of levels 0 to
-    /// `level`. Null if the source does not know it.
+    /// of one voxel of `level` around it, without reading voxels. The range includes the same region on all finer
+    /// levels. Null if the source does not know the range.
     virtual std::optional<ValueRange> brick_range(int level, const Size3& brick) const;
     /// Returns the stored blocks of a level, without reading voxels. Null if the source does not know them, or if there
     /// are more than `most`.

@@ -9,7 +9,7 @@ namespace shvr {
 /// Limits of the voxel spacing, in its unit. They keep squares and quotients of spacings in range during rendering.
 inline constexpr double MIN_SPACING = 1e-12, MAX_SPACING = 1e12;
 
-/// Converts "micron", "µm", "micrometer" to "um". Keeps unknown units, without control characters and cut at 60.
+/// Converts "micron", "µm", "micrometer" to "um". Cuts unknown units at 60 characters, removes control characters.
 std::string plain_unit(std::string_view unit);
 
 /// Returns the number of micrometres in a unit of length; null if the unit is not a length ("voxel").

@@ -61,7 +61,7 @@ struct VolumeInfo {
     glm::dmat3 directions{1.0};
     glm::dvec3 origin{0.0};
     std::string frame{};
-    /// The fill value that the user states; infinite: no such value; null: fill values are detected (outliers.h).
+    /// The fill value that the user states; infinite: there is none; null: fill values are detected (outliers.h).
     std::optional<double> nodata{};
     /// What the reader assumed or left out, one sentence each ("no spacing stated; 1 voxel assumed").
     std::vector<std::string> warnings{};
@@ -126,7 +126,7 @@ struct IntensityWindow {
 };
 
 /// Returns the window of all values, or of range() if outliers would leave the others less than a fifth of the codes
-/// and not every integer has its own code. For 16-bit integers measured in part: the type's range (others may exceed).
+/// and not every integer has its own code. For partly measured 16-bit integers: the whole range of their type.
 IntensityWindow window_for(VoxelType type, const VolumeStatistics& statistics);
 IntensityWindow window_for(VoxelType type, double minimum, double maximum);
 /// Returns whether every value of such a volume has its own code in its window. If so, comparing codes gives the same

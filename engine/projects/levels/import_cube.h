@@ -29,7 +29,7 @@ struct ImportCube {
     std::vector<T> values, lower, upper;
 };
 
-/// Sets the ranges of level 0. They are needed only if some voxels are not finite: these get empty ranges.
+/// Makes ranges for level 0 only if some voxels are not finite. A non-finite voxel gets an empty range.
 template <class T>
 void find_own_ranges(ImportCube<T>& cube)
 {

@@ -40,7 +40,7 @@ struct CapitulumStage {
     bool joins_rim;  ///< joins florets' veins at the rim to abaxial veins
     /// Joins other florets' veins to adaxial veins or, near the axis, to each other; and adaxial to abaxial veins.
     bool joins_between;
-    /// Middle and tip of bracts, as rho and height above the rim. Bracts first cover the head and later spread.
+    /// Middle and tip of bracts: rho, height above the rim. Bracts first cover the head, and spread at later stages.
     std::array<glm::dvec2, 2> bract;
 };
 inline constexpr CapitulumStage CAPITULUM_STAGES[] = {

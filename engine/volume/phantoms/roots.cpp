@@ -18,7 +18,7 @@ constexpr uint8_t MAIN_ROOT = 1, LATERAL_ROOT = 2, FOREIGN_ROOT = 3;
 constexpr int MAIN_ROOTS = 5, ROOT_PIECES = 12;
 constexpr double SOIL_SURFACE = 0.84;
 
-/// Returns the soil at a position: a mixture of grains, clods and pores. Its brightest parts equal faint roots.
+/// Returns the soil at a position: grains, clods and pores, whose brightest parts are as bright as the faintest roots.
 Tissue soil_at(const glm::dvec3& place, uint32_t seed, double softness)
 {
     const double height = place.z - SOIL_SURFACE - 0.04 * (value_noise(seed + 1, place * 9.0) - 0.5);

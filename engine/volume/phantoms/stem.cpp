@@ -1,5 +1,5 @@
-// A phantom of a stem like that of Arabidopsis thaliana: a ring of long, thin bundles without joins, a voxel or two
-// below the dermal tissue; fibres between them, cortex outside, pith inside. Positions: in a slice's shorter side.
+// A phantom of a stem like that of Arabidopsis thaliana: a ring of long, thin, separate bundles, just below the dermal
+// tissue; fibres between them, cortex outside, pith inside. Positions are fractions of a slice's shorter side.
 
 #include <cmath>
 
@@ -19,7 +19,7 @@ constexpr double OUTER = 0.40, DERMAL_INNER = 0.350, BUNDLE_RADIUS = 0.024, RING
 constexpr double MIN_GAP = 0.006, MAX_GAP = 0.030;
 constexpr double STEM_DERMAL = 150.0, CORTEX = 70.0, FIBRES = 100.0, LUMEN = 42.0, WALL = 78.0;
 
-/// Returns the position of the stem's bent axis at a height in voxels.
+/// The stem's bent axis: maps a height in voxels to a position in the slice.
 struct StemAxis {
     Size3 size;
     double scale;  ///< the shorter side of a slice, in voxels
