@@ -21,8 +21,8 @@ public:
 
     /// Minimum device memory of a mask that has this many painted bricks.
     static uint64_t bytes_for(uint64_t painted_bricks);
-    /// Uploads `bricks`, the changed bricks of `mask`; grows the atlas if they do not fit. Does not wait: frames
-    /// submitted later see the change. On failure the device holds no mask, and the next update uploads everything.
+    /// Uploads `bricks`, the changed bricks of `mask`; grows the atlas if they do not fit. Does not wait; frames
+    /// submitted later show the change. On failure the device holds no mask, and the next update uploads everything.
     void update(const Mask& mask, std::span<const int64_t> bricks);
 
     /// The slot of a painted brick; gpu::NO_SLOT if it is not on the device.
@@ -31,7 +31,7 @@ public:
     bool is_stale() const { return is_stale_; }
     /// The voxel box of each painted brick, in a volume of `size`.
     std::vector<VoxelBox> bricks(const Size3& size) const;
-    /// Handles for a graph; null while nothing is painted.
+    /// The mask's handles for `graph`; null while nothing is painted.
     std::optional<MaskBinding> import(FrameGraph& graph) const;
 
 private:

@@ -130,7 +130,7 @@ public:
         limited,  ///< the budget cannot hold all visited bricks
     };
     virtual State state() const = 0;
-    /// Number of bricks that rays visited but that cannot be read; coarser bricks are drawn instead.
+    /// Number of visited bricks that cannot be read; coarser bricks are drawn instead.
     virtual size_t missing() const = 0;
     /// Messages about bricks that failed to load since the last call, one sentence each.
     virtual std::vector<std::string> take_messages() = 0;
@@ -168,7 +168,7 @@ public:
     /// Every brick on the device, and a revision number that changes with this list.
     virtual std::vector<Place> places() const = 0;
     virtual uint64_t places_revision() const = 0;
-    /// Handles for kernels that work on a region of level 0.
+    /// The volume's handles for kernels that work on a region of level 0.
     virtual VolumeBinding atlas(FrameGraph& graph) = 0;
     /// The bricks that overlap a box of voxels; they keep their slots until the next call. Null if some are not on the
     /// device yet; these are then loaded first. `wait`: reads missing bricks now, and fails if it cannot.

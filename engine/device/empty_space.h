@@ -29,7 +29,7 @@ private:
 
     std::optional<LeapGridInput> look_;  ///< the look for which the grid is built, without its mask handles
     bool holds_ = false;                 ///< pictures are correct, except for the patch
-    CellBox patch_;                      ///< changed cells that the grid does not reflect yet
+    CellBox patch_;                      ///< changed cells that are not yet reflected in the grid
     uint32_t stage_ = 0;                 ///< index of the next stage, up to LEAP_STAGES
     CellBox changed_;                    ///< cells covered by the stages in progress
     glm::uvec3 cell_counts_{0};          ///< the size of the whole grid

@@ -1,5 +1,5 @@
 #pragma once
-// Local ambient occlusion of the bricks on the device: tracks which cells and values are stale, and renews them in
+// Local ambient occlusion of the bricks on the device: tracks which cells and values are stale, and updates them in
 // slices, nearest to the eye first. Its images use the slots of the density atlas, so they need no table of their own.
 // Allocates nothing on the device until a look asks for ambient occlusion.
 //
@@ -7,10 +7,10 @@
 //   transfer function, radius            -> all cells, all values
 //   rays, hemisphere                     -> all values
 //
-// Stale values stay until they are renewed; bricks that never had values are fully lit. Renewing only stale values
-// gives the same bits as recomputing everything. While a brick that light comes from is not on the device, its finest
-// ancestor there stands in; once it arrives, the values are renewed. Values computed with all their bricks present
-// depend on nothing else, and stay when those bricks are evicted. One thread, the one that owns the memory.
+// Stale values stay until they are updated; bricks that never had values are fully lit. Updating only stale values
+// gives the same bits as recomputing everything. While a brick from which light comes is not on the device, its finest
+// ancestor on the device stands in; once the brick arrives, the values are updated. Values computed with all of their
+// bricks stay valid when those bricks are evicted. Used only by the thread that owns the memory.
 
 #include <optional>
 #include <unordered_map>
@@ -44,7 +44,7 @@ public:
 
     /// Frees all memory.
     void clear();
-    /// Sets the look to compute for. Fails if the budget cannot hold the images.
+    /// Sets the look for which light is computed. Fails if the budget cannot hold the images.
     void look(const Look& look, const DeviceVolume& volume, const DeviceMask& mask);
     /// Reports a change of voxels. `apron`: 0 if their paint changed; if their densities changed, the apron in voxels
     /// of each brick's own level.
@@ -60,8 +60,8 @@ public:
     std::vector<int> reach() const;
     /// Whether anything is stale.
     bool is_due();
-    /// Whether pictures show the final light of a brick: the brick is on the device, and its values were computed with
-    /// all the bricks that they need.
+    /// Whether pictures show the final light of a brick: it is on the device, and its values were computed when all
+    /// bricks that they depend on were on the device.
     bool is_lit(const BrickKey& key);
     /// Limits of one slice.
     struct Most {
@@ -88,7 +88,7 @@ private:
         BrickTexels::Range range;
         bool needs_cells = true, needs_values = true;
         bool is_new = true;             ///< its values have never been computed
-        bool is_exact = false;          ///< whether every brick that its values needed was on the device
+        bool is_exact = false;          ///< whether all bricks that its values depend on were on the device
         std::optional<bool> is_seen{};  ///< null after a change of the brick's range, look, paint or neighbours
     };
     using Entries = std::unordered_map<BrickKey, Entry, BrickKeyHash>;

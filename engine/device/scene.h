@@ -103,8 +103,8 @@ public:
     void update_density(const DensityField& field, std::span<const VoxelBox> changed);
 
     /// Sets the opaque balls and rods that end rays: `surfaces`, and those of the trace in the colours of `groups`.
-    /// Fails as `surface_tree` and gpu::Memory::create do; the earlier surfaces then stay. If only colours or sizes
-    /// differ from the surfaces shown, only colours and sizes are written.
+    /// Fails as `surface_tree` and gpu::Memory::create do, and then keeps the earlier surfaces. If only colours or
+    /// sizes differ from the surfaces shown, only colours and sizes are written.
     void show_surfaces(std::vector<SurfaceLook> surfaces, const TraceGraph& trace, const Groups& groups);
     /// Shows the trace after these changes. The cost is proportional to the number of changes, except if thousands of
     /// nodes change at once or a group's radius changes.

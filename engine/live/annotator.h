@@ -45,7 +45,7 @@ public:
     Annotator(Renderer& renderer, std::unique_ptr<Work> work);
 
     /// For saving, file names and the trace's selection. To change annotations, use the functions below, which also
-    /// show the change on the device. If memory is too short to show a change, they do not fail: see `is_behind`.
+    /// show the change on the device. They succeed even if memory is too short to show a change: see `is_behind`.
     Work& work() { return *work_; }
     const Work& work() const { return *work_; }
     /// Releases the work to another annotator. This annotator must not be used afterwards.

@@ -9,8 +9,8 @@
 // If the volume has room for sample bits, they are computed after the last stage and after every patch. This takes at
 // most 84 loads per cell.
 //
-// After a few cells changed, a patch makes the grid correct at once, but some leaps stay shorter than necessary until
-// the four stages have run. A patch takes one thread per cell and few loads.
+// After a few cells have changed, a patch makes the grid correct at once, but some leaps stay shorter than necessary
+// until the four stages have run. A patch takes one thread per cell and few loads per thread.
 
 #include <array>
 #include <optional>

@@ -30,8 +30,8 @@ ResourceDesc occlusion_around_desc(uint32_t size, uint32_t jobs);
 struct OcclusionTaps {
     double radius = 0.0;
     double first = 0.0;                   ///< length at a ray's start in which nothing blocks light
-    std::vector<gpu::OcclusionTap> taps;  ///< from near to far; their stretches and `first` add up to the radius
-    std::array<uint32_t, gpu::OCCLUSION_SIZES + 1> end{};          ///< end of the near taps, then ends by cell size
+    std::vector<gpu::OcclusionTap> taps;  ///< from near to far; the sum of their stretches and `first` is the radius
+    std::array<uint32_t, gpu::OCCLUSION_SIZES + 1> end{};          ///< ends in `taps`: near taps, then each cell size
     double near_stretch = 0.0;                                     ///< ray length covered by the first near tap
     std::array<double, gpu::OCCLUSION_SIZES> stretches{1.0, 1.0};  ///< ray length covered by one tap, per cell size
     std::array<uint32_t, gpu::OCCLUSION_SIZES> aprons{};           ///< how many cells around a brick taps reach

@@ -41,7 +41,7 @@ uint64_t steps_of_block(const VolumeBinding& volume, const RaycastInput& input, 
     // iteration per directory level. Unrolled loops of fixed length do not count (mask.glsl, groups.glsl, search.glsl).
     const uint64_t levels = volume.pages ? volume.pages->depth : 0;
     const uint64_t to_leap = 1 + levels;
-    const uint64_t to_search = to_leap + 1 + gpu::SEARCH_AHEAD * levels;  // each but the last advances the ray
+    const uint64_t to_search = to_leap + 1 + gpu::SEARCH_AHEAD * levels;  // all iterations but the last advance
     const uint64_t to_take = 1 + 2 * levels + (is_shelled ? 2 * (to_leap + 1) : 0);
     // Every iteration advances at least one lane by a step, except iterations in which all lanes find that they must
     // continue in another cell or brick.
