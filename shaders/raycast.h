@@ -26,7 +26,7 @@ SHARED_CONST float OUT_OF_REACH = 1e30f;
 /// The specialization constant SHININESS_SQUARINGS is log2 of the shininess if this is an integer below the constant.
 SHARED_CONST uint NOT_A_POWER_OF_TWO = 10u;
 
-/// The specialization constant SHELL: no iso-surface, or the shape of its region.
+/// Values of the specialization constant SHELL: no iso-surface, or the shape of the region that shows it.
 SHARED_CONST uint SHELL_NONE = 0u;
 SHARED_CONST uint SHELL_BALL = 1u;
 SHARED_CONST uint SHELL_BOX = 2u;

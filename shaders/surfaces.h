@@ -43,7 +43,7 @@ SHARED_CONST uint SURFACE_NODE_TEXELS = 3u;
 /// point of the far plane. Points are relative to the centre of the middle plane, at which the user looks, so points
 /// near it stay accurate even if the volume is large and the eye is far.
 struct SurfaceParams {
-    vec3 origin;  ///< origin of all other positions: origin + origin_rest
+    vec3 origin;  ///< all other positions are relative to origin + origin_rest
     vec3 origin_rest;
     vec3 middle_corner;
     vec3 middle_dx;
@@ -64,8 +64,8 @@ struct SurfaceParams {
     vec3 probe_color;  ///< linear light
 };
 
-/// Side of a tile in pixels; tiles start at the part's first pixel. A tile has a texel per pixel. The first texel holds
-/// the number of surfaces that its rays may meet; every other texel holds a surface's index and, from bit SURFACE_BLOCK
+/// Side of a tile in pixels; tiles start at the part's first pixel. A tile has a texel per pixel. The first texel
+/// counts surfaces that the tile's rays may meet; every other texel has a surface's index and, from bit SURFACE_BLOCK
 /// on, a bit for each of the tile's blocks of 4 x 2 pixels. If not all surfaces fit, rays search the boxes instead.
 SHARED_CONST uint SURFACE_TILE = 8u;
 SHARED_CONST uint SURFACES_IN_TILE = SURFACE_TILE * SURFACE_TILE - 1u;

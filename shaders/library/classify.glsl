@@ -45,7 +45,7 @@ vec4 classify(const RaycastParams params, float density)
     return look;
 }
 
-// The opacity of the fraction `part` of a step, less than 1.
+// The opacity of the fraction `part` (below 1) of a step.
 float opacity_of_part(const RaycastParams params, float density, float part)
 {
     const TablePlace place = table_place(params, density);

@@ -6,7 +6,7 @@ const float MAX_STEPS = 2147483648.0;
 // A ray's steps: whole steps of equal length, then the rest: a shorter and thus more transparent step.
 struct Lattice {
     float begin, end;    // lengths along the ray
-    uint whole;          // number of whole steps, and index of the rest
+    uint whole;          // number of whole steps, which is also the index of the rest
     float part;          // length of the rest as a fraction of a whole step; 0: no rest
     float rest_middle;   // length along the ray
 };

@@ -14,7 +14,7 @@ uvec2 thread_in_part()
            uvec2(in_eight % 4u, in_eight / 4u);
 }
 
-// Returns the point of a plane at `centre`, in pixels.
+// Returns the point of a plane at the pixel position `centre`.
 vec3 on_plane(vec3 corner, vec3 dx, vec3 dy, vec2 centre)
 {
     return corner + centre.x * dx + centre.y * dy;

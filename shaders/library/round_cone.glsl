@@ -7,7 +7,7 @@ struct Line {
     vec3 direction;  // unit
 };
 
-// The interval in which a line is inside: x ... y; empty if x > y.
+// The part x ... y of a line that is inside a surface; empty if x > y, as here.
 const vec2 NOTHING = vec2(1e30, -1e30);
 
 // `center` relative to the line's origin.

@@ -100,7 +100,7 @@ struct Course {
     float least, most;
 };
 
-// `to`: direction along the axes of the neighbours on this side. `rise`: each axis's part of a length.
+// `to`: direction along the axes of the neighbours on this side. `rise`: each axis's share of a unit of length.
 Course course_of(ivec3 texel, ivec3 to, vec3 rise, float own)
 {
     const ivec3 x = ivec3(to.x, 0, 0), y = ivec3(0, to.y, 0), z = ivec3(0, 0, to.z);
@@ -148,7 +148,7 @@ struct Surface {
     vec3 heights;   // direction in which densities fall fastest, in voxels
     vec3 scale;     // share of a cell's columns behind the surface, per axis: base - scale * height in cells
     vec3 base;
-    float height;   // distance of the surface, as dot(heights, position) in cells
+    float height;   // distance of the surface: dot(heights, position), in cells
     float wall;     // opacity, over a tap's stretch, of the half-space behind the surface
 };
 
@@ -232,7 +232,7 @@ vec2 after_cell(vec2 light, float stretch, float stopped)
     return vec2(light.x * (1.0 - stopped), light.y + light.x * stretch * (1.0 - stopped * (0.5 + BEND_4 * stopped)));
 }
 
-// A ramp of maximum steepness stands for a sharper edge, as wide as in cubes with the voxel's shortest side.
+// A ramp at maximum steepness stands for a sharper edge: it is drawn as in cubes of the voxel's shortest side.
 float sharpened_for(vec3 slope, float softened, float steepest)
 {
     if (STRETCHED == 0u) return softened;
@@ -374,7 +374,7 @@ void main()
         vec2 turned = vec2(1.0, 0.0);
         const float share = 1.0 / float(params.rays);
         for (uint k = 0u; k < rays; ++k) {
-            // Spherical Fibonacci points (Gonzalez 2010) about the normal, twice as dense where mirrored rays join.
+            // Spherical Fibonacci points (Gonzalez 2010) about the normal; twice as dense where mirrored rays are added
             const float height_share = 1.0 - share * (float(k) + 0.5);
             const float height = height_share < open ? 2.0 * height_share - open : height_share;
             const vec2 beside = sqrt(max(1.0 - height * height, 0.0)) * turned;

@@ -41,7 +41,7 @@ layout(binding = 13, r32ui) uniform writeonly uimage3D around_4;
 
 const uint CELLS_A_SIDE = NEAR_SIDE / CELL_SIZE;
 const uint CELLS_OF_ALL = CELLS_A_SIDE * CELLS_A_SIDE * CELLS_A_SIDE;
-// `near` is initially 0, as where nothing is visible. Loop counts skip work; branches never do.
+// `near` starts as 0, which is right where nothing is visible. Work is skipped by loop counts, not by branches.
 const uint CELLS_OF_ONE = (CELLS_OF_ALL + OCCLUSION_SPLIT - 1u) / OCCLUSION_SPLIT;
 shared uint cells[CELLS_OF_ONE];
 shared uint cell_count;
@@ -75,7 +75,7 @@ uint near_of(const OcclusionGatherParams params, const OcclusionJob job, ivec3 v
     const vec3 slope = (behind - before) / (2.0 * side);
     // A voxel of a coarse brick covers several voxels of this level; this is the offset from that voxel's centre.
     const vec3 beside = vec3(voxel & int((1u << above) - 1u)) + 0.5 - 0.5 * side;
-    // Densities curve within a voxel: this is the difference of their mean from the density at its centre.
+    // Densities curve within a voxel, so the voxel's mean density differs by this from the density at its centre.
     const float bend = dot(before + behind - 2.0 * middle, vec3(0.125 / side));
     const float code = middle + dot(slope, beside) + bend;
     // Ignores extremes beyond the neighbours: where neighbours show nothing, cells count as empty and are never read.
@@ -170,7 +170,7 @@ void main()
     bool is_any_coarser = false;
     for (uint i = 0u; i < OCCLUSION_AROUND; ++i)
         is_any_coarser = is_any_coarser || (i < around_count(params.reach) && around[i] >> OCCLUSION_LEVEL_SHIFT > 0u);
-    // Rare work is skipped by loops with a count of 0.
+    // Loops with a count of 0 skip rare work without a branch.
     const uint end_of_coarser = is_any_coarser ? ~0u : 0u;
     copy_cells(params, job, 0u, false, ~0u);
     copy_cells(params, job, 1u, false, ~0u);

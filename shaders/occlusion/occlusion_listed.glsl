@@ -16,7 +16,7 @@ shared uint voxels[(CELLS_OF_ONE * VOXELS_OF_CELL + APRONS_OF_ONE + 1u) / 2u];
 shared uint voxel_count;
 const uint IN_APRON = 1u << 15u;
 
-// Whether any of these voxels is in an occupied cell or, with `grow`, within a voxel of one.
+// Whether any of these voxels is in an occupied cell or, with `grow`, within one voxel of such a cell.
 bool any_cell_is_occupied(const OcclusionJob job, ivec3 first_voxel, ivec3 last_voxel)
 {
     const int grow = int(params.grow), side = 1 + 2 * grow;   // the same for all lanes, so that loops do not diverge

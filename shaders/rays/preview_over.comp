@@ -1,5 +1,5 @@
-// Blends the voxels found by preview.comp over the picture, half transparent: they show even if the volume hides them,
-// and the values under them stay visible in slices. Rays that end at such a voxel are unchanged. One thread per pixel.
+// Blends the voxels found by preview.comp over the picture, partly transparent. They show even if the volume hides
+// them; in slices, the values below stay visible. Rays that end at such a voxel are unchanged. One thread per pixel.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

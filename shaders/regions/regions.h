@@ -17,7 +17,7 @@
 
 SHARED_BEGIN
 
-/// Half-open range of x, relative to the region's first voxel.
+/// Half-open range of x coordinates, relative to the region's first voxel.
 struct RowSpan {
     int begin;
     int end;
