@@ -139,7 +139,7 @@ void PictureJob::begin_band()
     band_begin_ = band_end_;
     band_end_ = std::min(band_begin_ + band_rows_, size_.y);
     const size_t values = size_t(size_.x) * (band_end_ - band_begin_) * 4;
-    // Counts the band being drawn and the previous one, which the receiver may still hold, and one copied part.
+    // Counts two bands, since the receiver may still hold the previous one, and the copy of one part's pixels.
     constexpr uint64_t BANDS = 2;
     renderer_.note_picture_bytes(BANDS * values * sizeof(float) +
                                  PIXEL_BYTES * options_.part_pixels * std::min(options_.part_pixels, band_rows_));

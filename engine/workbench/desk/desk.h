@@ -32,7 +32,7 @@ struct WorkbenchOptions {
     bool has_preferences = true;      ///< false: uses default preferences, and saves no changes of them
     std::function<double()> now_s{};  ///< returns the seconds of any clock; null: uses the system's clock
     std::string version{};            ///< the program's, for reports; empty: unknown
-    DeviceSource devices{};           ///< source of haptic devices; if its functions are empty: this machine
+    DeviceSource devices{};           ///< where haptic devices come from; without functions: from this machine
     /// Slices follow a probe that leaves their plane, and their move is logged; false: only logged actions move slices.
     bool slices_follow = true;
     TextDrawer draw_texts{};  ///< draws labels into picture files; null: no labels

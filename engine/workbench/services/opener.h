@@ -96,7 +96,7 @@ private:
     const Others others_;
     std::shared_ptr<Opening> opening_;                     ///< null: nothing is being opened
     std::shared_ptr<std::exception_ptr> awaited_failure_;  ///< failure of the opening for which `open` waits
-    Jobs::Number next_return_ = Jobs::Number{1} << 48;     ///< numbers for bring_back(), above all job numbers
+    Jobs::Number next_return_ = Jobs::Number{1} << 48;     ///< for openings by bring_back(); above all job numbers
     std::unique_ptr<Document> away_;  ///< the open document while the device has no room for it next to another one
     std::set<std::filesystem::path> allowed_outside_;
     std::vector<std::string> recovered_;

@@ -131,7 +131,7 @@ void Viewer::follow_look()
     document.screen.advance();
 }
 
-/// Uses the current camera and probe, not those of the screen, which lag if several actions come between frames.
+/// Returns the pane for the current camera and probe; the screen's pane lags if several actions come between frames.
 Pane Viewer::pane(size_t index) const
 {
     const std::vector<Pane> panes = panes_of(document_->session.view, document_->camera, pixels_,
