@@ -51,7 +51,7 @@ std::string content_in_tiff(const std::filesystem::path& path)
 struct ValueCounts {
     std::array<bool, 256> is_there{};
     int values = 0;
-    int64_t pairs = 0, equal = 0;  ///< pairs of neighbours without a 0; equal ones
+    int64_t pairs = 0, equal = 0;  ///< pairs of neighbours that are not 0; equal pairs
     bool are_labels = true;        ///< false: a mask cannot hold a value, or there are too many
 
     template <class T>

@@ -25,9 +25,9 @@ struct VoxelStrip {
     int64_t z, brick_y;
     int64_t height() const { return std::min<int64_t>(gpu::BRICK_SIZE, size.y - brick_y * gpu::BRICK_SIZE); }
     size_t voxels() const { return size_t(size.x * height()); }
-    /// Whether it is the last strip of its slice.
+    /// Whether this is the last strip of its slice.
     bool ends_slice() const { return (brick_y + 1) * gpu::BRICK_SIZE >= size.y; }
-    /// Whether it is the last strip of its layer of bricks.
+    /// Whether this is the last strip of its layer of bricks.
     bool ends_layer() const
     {
         const bool is_last_slice = z % gpu::BRICK_SIZE == gpu::BRICK_SIZE - 1 || z == size.z - 1;

@@ -162,7 +162,7 @@ bool TraceMatch::is_found(size_t truth_segment) const
     return covers(truth_segment, ways_between(near, from->second, to->second)).has_value();
 }
 
-/// The internodes near a segment of the truth whose own segments are not matched to any; ascending.
+/// Internodes near a segment of the truth that are in no matched segment of the trace; ascending.
 std::vector<uint32_t> TraceMatch::free_near(size_t truth_segment) const
 {
     std::vector<uint32_t> internodes;

@@ -38,7 +38,7 @@ FoundHead find_head(VeinGraph graph);
 /// Follows the chain of internodes that begins at a node with one internode, and returns its other end or branch.
 uint32_t other_end(const VeinGraph& graph, uint32_t end);
 
-/// Quantile by linear interpolation between the sorted values (type 7 of Hyndman and Fan 1996); needs a value.
+/// Quantile of one or more values, interpolated linearly between sorted values (type 7 of Hyndman and Fan 1996).
 double quantile(std::vector<double> values, double share);
 
 // Each of these functions computes some of the measures and adds their rows.

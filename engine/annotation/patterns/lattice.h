@@ -23,7 +23,7 @@ struct FloretPair {
     double length, rho;
     int step = 0;             ///< whorls from one to the other
     double chance = 0.0;      ///< probability that a pair of random azimuth would be in line
-    bool is_in_line = false;  ///< a lattice point is within a fifth of the length of `outer`
+    bool is_in_line = false;  ///< a lattice point is at most `length` / 5 from `outer`
 };
 
 struct FloretLattice {

@@ -106,7 +106,7 @@ private:
 
 void bootstrap(const std::vector<Equation>& equations, FloretLattice& lattice)
 {
-    // Limits the cost to 2e7 equations; only above 200000 florets it is higher.
+    // Limits the cost to 2e7 equations, except above 200000 florets, since 100 rounds are the minimum.
     const size_t rounds = std::clamp<size_t>(20000000 / equations.size(), 100, 1000);
     std::vector<double> found;
     SplitMix64 random(0);

@@ -118,7 +118,7 @@ struct TraceTrees {
     std::vector<Place> places;         ///< depth first; roots (by ascending number) have no internode
     std::vector<uint32_t> left_out{};  ///< internodes that close loops, ascending
 };
-/// Fails if the trace has loops and `loops` does not allow to break them open. `form`: format for messages ("SWC").
+/// Fails if the trace has loops and `loops` does not allow breaking them open. `form`: format for messages ("SWC").
 TraceTrees trees_of(const TraceGraph& trace, Loops loops, const char* form, std::vector<std::string>& notes);
 
 }  // namespace shvr

@@ -1,7 +1,7 @@
 // Reads RSML (trace_rsml.cpp writes it): the metadata's unit and resolution, and for each root its polyline, its
 // functions "diameter" and "group" (with the domain polyline, length or uniform), and its child roots. Other elements
-// and attributes are ignored, since other programs write many. A nested root begins at the parent's node at its first
-// point; if there is none, it is joined to the nearest node of the parent. All numbers are pixels
+// and attributes are ignored, since other programs write many. A nested root begins at the parent's node that lies at
+// the root's first point or, without such a node, is joined to the parent's nearest node. All numbers are pixels
 // (https://rootsystemml.github.io/format/metadata): `resolution` pixels make one `unit`. If the unit is "pixel", or
 // neither is stated, a pixel is a voxel along x. A missing unit is the volume's, and a missing resolution is 1. Lengths
 // are converted to the volume's unit. Without a diameter, the radius is one pixel. If the metadata state that positions

@@ -101,7 +101,7 @@ private:
     bool is_ending_ = false;
     std::string failure_;
 
-    uint64_t checksum_ = 0;     ///< of the last framed record; used by the journal's thread
+    uint64_t checksum_ = 0;     ///< checksum of the last framed record; used by the journal's thread
     bool is_to_begin_ = false;  ///< header or length may not be on disk yet; used by the journal's thread
     std::thread thread_;
 };

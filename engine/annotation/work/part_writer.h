@@ -12,9 +12,9 @@
 
 namespace shvr {
 
-/// `journal`: the mask's metadata name it (as in `files`) and its last durable record; null if there is none. Returns a
-/// sentence if the old image is kept under another name because `foreign` demands it. If `progress` throws, the file
-/// (or image) stays as it was.
+/// `journal`: its name (from `files`) and its last durable record are recorded with the mask; null if there is none.
+/// Returns a sentence if the old image is kept under another name because `foreign` demands it. If `progress` throws,
+/// the file (or image) stays as it was.
 std::string write_part(Part part, const Document& document, const WorkFiles& files,
                        const std::vector<LabelImage::Color>& looks, const Journal* journal, Foreign foreign,
                        const Progress& progress = {});
@@ -23,7 +23,7 @@ std::string write_part(Part part, const Document& document, const WorkFiles& fil
 uint64_t inode_of(const std::filesystem::path& path);
 
 /// Keeps a file of another program that is about to be replaced: the constructor gives it a second name, its `old_of`
-/// name. So it has a name of its own even if the process ends before or after the replacement.
+/// name. So the file has a name even if the process ends in between.
 class KeptFile {
 public:
     /// Fails if the file can be neither linked nor copied. Does nothing if another process has moved the file.

@@ -203,7 +203,7 @@ public:
         /// Memory budget of commands; older commands are dropped, and fetched from the journal again when needed.
         uint64_t history_bytes = uint64_t{256} << 20;
         /// A state is written to the journal after this many bytes (or twice the last state's size), or this many
-        /// steps. So opening takes little more than reading one state, and states are at most half of a journal.
+        /// steps. So opening takes about as long as reading one state, and states make up at most half of a journal.
         uint64_t bytes_between_states = uint64_t{16} << 20;
         size_t steps_between_states = 20000;
     };

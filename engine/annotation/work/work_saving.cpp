@@ -158,7 +158,7 @@ std::unique_ptr<Work::Saving> Work::begin_save(std::vector<LabelImage::Color> lo
     refuse_if_only_looking();
     expect_choice();
     expect_names(files_);
-    // Also called if another process has begun a journal since this process last looked; begin_journal then fails.
+    // begin_journal is also called, and fails, if another process has begun a journal since this process last looked.
     if (scan_.inode != 0 || is_there(files_.journal) || history_.undoable() + history_.redoable() > 0) begin_journal();
     if (journal_) journal_->append(RecordKind::saving, {}, {});
     is_saving_ = true;
@@ -241,7 +241,7 @@ void Work::Saving::write(Part part, const Progress& progress)
         note_kept(saved_.notices, part, file, old);
         if (part == Part::mask) files_.mask_before = old.value_or(file);  // its header is read before it is replaced
     }
-    // Otherwise a file here may be from an interrupted save, or from a program that wrote the same content.
+    // In the case `kept`, a file may be left from an interrupted save, or from a program that wrote the same content.
     const bool is_last_save = seen.digest && seen.digest == digest_of(known_, part);
     const Foreign foreign = is_foreign_now ? Foreign::replaced : is_last_save ? Foreign::excluded : Foreign::kept;
     try {

@@ -1,5 +1,5 @@
-// Undoable settings: whether to use the journal's or the session file's at opening, and the records of their changes.
-// The same for kept settings, which are restored on opening but are not steps of the history.
+// Undoable settings: the choice between the values of the journal and of the session's file at opening, and the records
+// of changes. The same for kept settings, which are restored on opening but are not steps of the history.
 
 #include <utility>
 

@@ -133,7 +133,7 @@ Holder holder_in(const FileDescriptor& file)
                                 "; expected nobody else to be writing it"));
 }
 
-/// Returns false only if it is certain that there is no such file.
+/// Returns false only if the file is certainly missing.
 bool is_there(const fs::path& path)
 {
     // Opens the file, because on network file systems this asks the server, while stat(2) may use cached data.

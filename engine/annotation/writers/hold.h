@@ -50,8 +50,8 @@ public:
     Hold(const Hold&) = delete;
 
     const std::filesystem::path& journal() const { return journal_; }
-    /// False if another process has claimed the journal meanwhile. This process must then not start writing the
-    /// journal; the claim does not include what it still writes to its open file. Any thread.
+    /// False if another process has claimed the journal meanwhile. This process must then not begin to write the
+    /// journal; records that it still writes to its open file are not part of the claimed journal. Any thread.
     bool is_kept() const;
     /// Another process that writes the journal now; null if there is none.
     std::optional<Holder> successor() const;
