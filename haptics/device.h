@@ -22,7 +22,7 @@ inline constexpr double MAX_REACH_M = 10.0;  ///< no device reaches farther from
 struct DeviceState {
     uint64_t time_ns = 0;         ///< position's time on the device's own steady clock; only differences are meaningful
     uint32_t sequence = 0;        ///< counts states; a gap means lost states
-    uint32_t force_sequence = 0;  ///< number of the force that was in effect at `time_ns`
+    uint32_t force_sequence = 0;  ///< number of the force (see write()) that was in effect at `time_ns`
     glm::dvec3 position_m{0.0};
     glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
     uint32_t buttons = 0;  ///< a set of PAINT_BUTTON and MOVE_BUTTON
@@ -43,7 +43,7 @@ struct DeviceCaps {
     bool senses_rotation = false;
     bool outputs_force = false;
     bool tells_force_sequence = false;  ///< states report the force in effect; if not, `latency_s` determines it
-    bool rate_control = false;          ///< the device reports speeds, not positions; silence means rest
+    bool rate_control = false;          ///< the device reports speeds, not positions; no report means rest
     bool operator==(const DeviceCaps&) const = default;
 };
 

@@ -193,7 +193,7 @@ glm::dvec3 click_of(const ForceSettings& settings, const DeviceCaps& caps, const
     return std::sin(std::numbers::pi * double(CLICK_NS - click.left_ns) / double(CLICK_NS)) * click.peak_n;
 }
 
-/// Returns spring, click and damping forces, with fades applied but not yet limited.
+/// Returns the sum of spring, click and damping forces, after fades and before limits.
 ForceStep feel(const ForceSettings& settings, const DeviceCaps& caps, const RelevancePatch& patch, const Moment& moment,
                ForceMemory& memory, GrowthMemory& growth)
 {
@@ -273,7 +273,7 @@ ForceStep step(const ForceSettings& settings, const DeviceCaps& stated, ReadResu
                                : std::min(now_ns - memory.last_tick_ns, MAX_TICK_NS);
     const double dt_s = double(dt_ns) * 1e-9;
     memory.last_tick_ns = now_ns;
-    add_heat(memory.force_n, dt_s, memory.heat);  // the force of the last tick, which was in effect until now
+    add_heat(memory.force_n, dt_s, memory.heat);  // the force of the last tick, which has been in effect since
 
     // ---- The hand's position ----
     if (result == ReadResult::lost) return stop(settings, FORCE_NO_DEVICE, now_ns, memory);

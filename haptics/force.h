@@ -100,7 +100,7 @@ struct ForceStep {
     uint32_t sequence = 0;   ///< number to write with the force
     double made_j = 0.0;     ///< energy that the observer found to be generated and that damping has not removed yet
     uint32_t objects = 0;    ///< number of objects touched so far, in object following
-    double latency_s = 0.0;  ///< measured; 0 if the device does not report it
+    double latency_s = 0.0;  ///< measured; 0 if the device does not report force numbers
 };
 
 inline constexpr uint64_t RELEVANCE_FADE_NS = 100'000'000;    ///< duration of the fade while relevance is unusable

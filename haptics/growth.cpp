@@ -113,7 +113,7 @@ uint32_t seed_across_levels(const RelevancePatch& object, const glm::dvec3& cent
         const uint32_t at = uint32_t(voxel.x / 32 + mask.words_per_row * (voxel.y + mask.size.y * voxel.z));
         seeded += growing.seed(at, voxel.x / 32, 1u << (voxel.x % 32));
     };
-    // Iterates over the finer of the two patches, so that none of its voxels is missed.
+    // Iterates over the patch with the smaller voxels, so that no voxel of the other patch is missed.
     if (object.spacing.x <= mask.spacing.x) {
         each_voxel_in_ball(object, centre, radius, [&](const glm::ivec3&, const glm::dvec3& p) { seed_at(p); });
         return seeded;
@@ -233,7 +233,7 @@ const RelevancePatch& advance_object(const RelevancePatch& patch, const glm::dve
         RelevancePatch& next = memory.patches[1 - memory.current];
         memory.is_growing = seed_from_object(memory.object(), patch, centre, radius, next, memory.list) > 0;
         memory.is_new_contact = false;
-        if (!memory.is_growing) {  // no part of the object is left, or the hand jumped out of the object's region
+        if (!memory.is_growing) {  // nothing of the object is left, or the hand jumped out of the region
             memory.has_object = false;
             memory.patches[memory.current].sequence = 0;
         }

@@ -124,7 +124,7 @@ BallIntegrals integrate_part(const RelevancePatch& patch, const glm::dvec3& cent
     const RowRange slices =
         rows_within(c.z, (IS_CUT ? std::min(radius, reach.z + spacing.z) : radius) / spacing.z, patch.size.z);
     for (int32_t z = slices.begin; z < slices.end; ++z) {
-        // The largest disc of the ball within the slice bounds the chords; it is nearest to the ball's centre.
+        // The largest disc of the ball in this slice, at the z nearest to the ball's centre, bounds the chords.
         const double nearest = (std::clamp(c.z, double(z), double(z + 1)) - c.z) * spacing.z;
         const double disc = std::sqrt(std::max(radius * radius - nearest * nearest, 0.0));
         const RowRange rows =

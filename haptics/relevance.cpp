@@ -32,7 +32,7 @@ bool RelevancePatch::covers(const glm::dvec3& centre, double radius) const
     for (int axis = 0; axis < 3; ++axis) {
         const double lower = (centre[axis] - radius) / spacing[axis], upper = (centre[axis] + radius) / spacing[axis];
         if (!std::isfinite(lower) || !std::isfinite(upper)) return false;
-        // If the ball lies beyond the volume along any axis, it contains no voxels, so its relevance is known: none.
+        // A ball entirely beyond the volume along any axis contains no voxels, so its relevance is known.
         if (upper <= 0.0 || lower >= double(volume_size[axis])) return true;
     }
     for (int axis = 0; axis < 3; ++axis) {

@@ -49,7 +49,7 @@ struct RelevancePatch {
     /// Returns whether the patch covers the ball's part in the volume. Physical units: the corner of voxel (0, 0, 0) is
     /// the origin, and voxel i has its centre at (i + 0.5) * spacing. False while nothing is known yet.
     bool covers(const glm::dvec3& centre, double radius) const;
-    /// Returns the known part of the ball: the whole ball if `covers` returns true for it.
+    /// Returns the known part of the ball: the whole ball if covers() is true.
     KnownPart known_part(const glm::dvec3& centre, double radius) const;
 };
 

@@ -13,9 +13,9 @@ from pathlib import Path, PurePosixPath
 
 # ---- The rules, as data ---------------------------------------------------------------------------------------------
 
-# Room: the rooms whose files it may include, in addition to its own. Lists exactly the dependencies in use: adding one
-# is a decision, made here. A file belongs to the room with the longest path that is a prefix of the file's; a file
-# without a room is an error. From the ground up:
+# Each room (folder), and the other rooms whose files it may include. The table lists exactly the dependencies in use:
+# adding one is a decision, made here. A file belongs to the room with the longest path that is a prefix of the file's
+# path; a file without a room is an error. From the ground up:
 MAY_INCLUDE = {
     "shaders": "",
     "engine/base": "",

@@ -65,7 +65,7 @@ App::App(const AppOptions& options) : options_(options), window_("SHVR", options
         if (!*log_) fail(options.log.string(), ": cannot be written; expected a file for the log of actions");
         bench_->log_to([this](const std::string& line) { *log_ << with_present_time(line) << std::endl; });
     }
-    // Opening now, with the start page behind it, shows errors over that page.
+    // Errors of opening are shown over the start page, since no document is open then.
     if (!options.input.empty())
         bench_->begin_open(options.input, options.settings);
     else
@@ -267,11 +267,11 @@ bool App::ui_has_mouse(const InputEvent& event) const
 }
 
 /// Returns whether the interface takes a key. Typed text goes to the field being edited. While panels are used by
-/// keyboard, or a popup is open, they get the keys that navigate, and all other keys act as shortcuts.
+/// keyboard, or a popup is open, these get the navigation keys, and all other keys act as shortcuts.
 bool App::ui_has_key(const KeyEvent& event) const
 {
     if (field_has_keys() || choosers_have_keys() || bench_->model().shows_palette) return true;
-    if (!bench_->model().awaits_key.empty()) return false;  // any key may be the one to be bound
+    if (!bench_->model().awaits_key.empty()) return false;  // the next key, whichever it is, is bound to a shortcut
     return panels_have_keyboard() && moves_in_panels(event);
 }
 
@@ -283,7 +283,7 @@ bool App::panels_have_keyboard() const
            bench_->model().shows_palette;
 }
 
-/// Holds back input after a key that may have opened or closed a field, until a frame shows who has the keyboard.
+/// Holds back input after a key that may have opened or closed a field, until a frame shows where keys go.
 std::vector<InputEvent> App::events_in_turn(double timeout_s)
 {
     for (InputEvent& event : window_.wait_events(timeout_s)) held_back_.push_back(std::move(event));

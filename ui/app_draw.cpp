@@ -44,8 +44,8 @@ bool App::draw_ui()
 {
     const double begun = window_.now_s();
     const bool moves = something_moves(), is_open = bench_->is_open();
-    // On a software device, presentation waits for all earlier submissions. This wait, in its place, makes the wait
-    // known, so that it can be subtracted from the frame's time.
+    // On a software device, presentation would wait for all earlier submissions. Waiting here instead makes that time
+    // known, so that it can be subtracted from the frame's.
     if (is_open && renderer_->device().traits().is_cpu) bench_->screen().wait();
     const double waited_s = window_.now_s() - begun;
     follow_appearance();  // renewing fonts waits for the device, so it must precede the acquisition of an image

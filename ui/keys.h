@@ -34,7 +34,7 @@ bool moves_focus(const KeyEvent& event);
 /// Returns whether the key returns the keyboard from the panels to the picture.
 bool leaves_panels(const KeyEvent& event);
 
-/// Returns GLFW_MOD_* of the modifiers that are down.
+/// Returns the GLFW_MOD_* bits of the modifier keys that are held.
 int mods_held(const Window& window);
 
 }  // namespace shvr::ui

@@ -22,10 +22,10 @@ struct AppReport {
     /// picture refines, `own_busy_ms` the frames drawn while one does.
     std::vector<double> own_idle_ms, own_busy_ms;
     std::vector<double> interval_ms;  ///< time between two frames while something was moving
-    std::vector<double> input_ms;     ///< latencies from a press until the frame that shows its effect is
-                                      ///< finished
-    /// Time from opening the last volume until the device has finished the first frame that shows any part of it, and
-    /// the first frame that shows all of it sharp.
+    std::vector<double> input_ms;     ///< time from a press until the frame with its effect is finished
+    /// Time from opening the last volume until the device has finished two frames:
+    /// the first frame that shows any part of the volume (first_picture_ms),
+    /// and the first frame that shows all of the picture sharp (sharp_picture_ms).
     std::optional<double> first_picture_ms, sharp_picture_ms;
     std::vector<double> relevance_ms;  ///< latencies from requesting relevance until the servo has it
     uint64_t view_submissions = 0;

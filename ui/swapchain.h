@@ -131,7 +131,7 @@ private:
     VkPresentModeKHR mode_ = VK_PRESENT_MODE_FIFO_KHR;
     std::array<double, 3> waits_ms_{};  ///< times that the last frames waited for the screen
     uint64_t presented_ = 0;
-    uint64_t taken_ = 0;            ///< number of the last frame that the screen is known to have taken from the queue
+    uint64_t taken_ = 0;            ///< number of the last frame known to have been taken from the queue by the screen
     uint64_t last_submission_ = 0;  ///< last submission of any frame
     bool is_stale_ = false;         ///< the swapchain must be re-created before the next frame
     bool imgui_is_ready_ = false;

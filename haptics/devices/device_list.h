@@ -33,8 +33,8 @@ struct DeviceOptions {
     OpenHapticsOptions openhaptics;  ///< its `allow_force` is ignored as well
 };
 
-/// Lists HID devices that match a profile, the Inverse3's service, OpenHaptics if it is installed, and the mouse, which
-/// is always present and last. Opens none of them; waits for the Inverse3's service for about 0.3 s at most.
+/// Lists HID devices that match a profile, the Inverse3's service, OpenHaptics if it is installed, and last the mouse,
+/// which is always present. Opens no device. Waits for the Inverse3's service for about 0.3 s at most.
 std::vector<DeviceListing> list_devices(const DeviceOptions& options);
 
 /// Returns the row of a HID device. `can_open`: whether the current user has permission to read and write the device.
@@ -43,8 +43,8 @@ DeviceListing listing_of(const HidListing& device, const HidProfile& profile, bo
 /// Opens the device with a listing's id; returns null for the mouse. Fails with a reason if it is gone or unusable.
 std::unique_ptr<HapticDevice> open_device(const DeviceOptions& options, const std::string& id);
 
-/// Opens the first usable device of HID, Inverse3 and OpenHaptics; returns null if none is present. Fails with the
-/// first reason if some are present but none can be used.
+/// Opens the first usable device of HID, Inverse3 and OpenHaptics. Returns null if no device is present. If devices are
+/// present but none can be used, fails with the reason of the first.
 std::unique_ptr<HapticDevice> open_first_device(const DeviceOptions& options);
 
 }  // namespace shvr

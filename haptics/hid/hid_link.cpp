@@ -27,7 +27,7 @@ constexpr int READ_TIMEOUT_MS = 10;  ///< short, so that shutdown never has to i
 constexpr milliseconds REOPEN_EVERY{15};
 constexpr milliseconds LOOK_EVERY{5};         ///< interval at which threads check whether the link is closing
 constexpr int MAX_REPORTS_A_DRAIN = 256;      ///< upper bound, so that a flood of reports cannot delay the newest
-constexpr uint64_t MAX_STEP_NS = 20'000'000;  ///< longest step of rate control, so that it does not leap after a pause
+constexpr uint64_t MAX_STEP_NS = 20'000'000;  ///< longest step of rate control: no leap after a pause
 // With a rate-control device, the probe yields to forces as with the mouse: 75 N/m, settling within about 10 ms.
 constexpr double GIVE_WAY = 75.0;
 constexpr double SETTLE_S = 0.01;
@@ -74,7 +74,7 @@ public:
         is_malformed_ = !input && !is_ignored(profile_, report);
         if (!input) return std::nullopt;
         ++reports_;
-        // Reports without a time or a sequence number get one on arrival.
+        // Reports without a time or a sequence number get their arrival time or a running number.
         if (!clock_) state_.time_ns = steady_ns();
         if (input->time) state_.time_ns = uint64_t(double(time_.next(*input->time)) * clock_->scale * 1e9 + 0.5);
         if (!profile_.find_input(HidQuantity::sequence)) state_.sequence = reports_;
@@ -322,13 +322,13 @@ private:
     std::atomic<uint64_t> connection_;  ///< 0: none
     std::atomic<bool> is_running_{true}, write_failed_{false};
     std::atomic<uint32_t> malformed_{0}, wake_{0};
-    uint32_t malformed_seen_ = 0;  ///< this member and the next two are used by the servo's thread only
+    uint32_t malformed_seen_ = 0;  ///< used by the servo's thread only, like the next two members
     RateMotion motion_;
     glm::dvec3 force_n_{0.0};
 
     Latest<Reading> readings_;
     Latest<Command> commands_;
-    mutable Latest<DeviceCaps> caps_;  ///< limits, from the reader to the servo; the constructor writes the first ones
+    mutable Latest<DeviceCaps> caps_;  ///< passed from the reader to the servo; the constructor sets the first
     std::thread reader_, writer_;
 };
 

@@ -31,7 +31,7 @@ private:
     MakeRelevance make_;
     double latency_s_ = 0.0;
     uint32_t every_ = 0, ticks_ = 0;
-    std::unique_ptr<RelevancePatch> patch_, next_;  ///< the patch felt now; the patch not yet felt (sequence 0: none)
+    std::unique_ptr<RelevancePatch> patch_, next_;  ///< the patch in use; its future replacement (sequence 0: none)
     uint64_t felt_ns_ = 0;                          ///< time when `next_` is felt
     uint64_t made_ = 0;
     double threshold_ = 0.0;

@@ -46,7 +46,7 @@ public:
     /// Sets the arm's velocity, for tests that throw the arm at objects.
     void set_velocity(const glm::dvec3& velocity) { velocity_ = velocity; }
     const glm::dvec3& true_position_m() const { return position_m_; }
-    /// Work done by the device's force on hand and arm, in J: the energy they gained from it.
+    /// Work done on hand and arm by the device's force, in J. Positive if the force added energy.
     double work_j() const { return work_j_; }
 
     DeviceCaps caps() const noexcept override;

@@ -29,7 +29,7 @@ struct ReplayOptions {
     bool relevance_anew = false;  ///< recomputes relevance even if the trace contains it
     /// Recomputed relevance is requested as in the window (engine/touch/region_wish.h) and felt after this delay.
     double relevance_latency_s = WINDOW_LATENCY_S;
-    uint32_t relevance_every = 0;  ///< ticks between updates of relevance, each felt at once; 0: as in the window
+    uint32_t relevance_every = 0;  ///< ticks between updates of relevance, each felt without delay; 0: as in the window
     std::function<void(const ReplayedTick& tick)> note_tick{};  ///< called after each tick, in order
 };
 
@@ -39,19 +39,19 @@ struct ReplayResult {
     double largest_force_n = 0.0;
     double largest_step_n = 0.0;  ///< between ticks
     double energy_j = 0.0;        ///< work of the forces along the hand's path; positive if the forces drove the hand
-    double proxy_rms = 0.0;       ///< distance between probe and proxy in contact, physical units
+    double proxy_rms = 0.0;       ///< RMS distance between probe and proxy in contact, physical units
     uint64_t contact_ticks = 0, patches = 0;
     uint32_t objects = 0, swaps = 0;    ///< number of objects touched on the last device; number of device changes
-    bool is_recorded = false;           ///< the relevance was read from the trace; false: it was computed
+    bool is_recorded = false;           ///< relevance came from the trace; false: it was recomputed
     uint64_t hash = 0;                  ///< FNV-1a of all forces' bits
-    uint64_t told = 0, told_equal = 0;  ///< ticks with a force in the trace; those replayed to equal bits
+    uint64_t told = 0, told_equal = 0;  ///< ticks with a recorded force; ticks replayed to equal bits
     std::vector<uint64_t> tick_ns;      ///< time that each step() took on the real clock
     std::vector<ForceStep> steps;       ///< if requested
 };
 /// Returns whether the trace's relevance is used: not with a modelled hand, whose path leaves the recorded relevance.
 bool replays_relevance(const Trace& trace, const ReplayOptions& options);
-/// If the trace's relevance is not used, calls `make_relevance` instead, also when the threshold changes; fails if
-/// `make_relevance` is empty.
+/// If the trace's relevance is not used, calls `make_relevance` for new relevance, also when the threshold changes.
+/// Fails if that function is needed but empty.
 ReplayResult replay_trace(const Trace& trace, const ReplayOptions& options, const MakeRelevance& make_relevance,
                           bool keep_steps = false);
 

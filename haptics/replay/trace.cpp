@@ -56,8 +56,8 @@ void read_caps(const JsonNode& node, DeviceCaps& caps)
     caps.tells_force_sequence = node["tells_force_sequence"].flag(caps.tells_force_sequence);
 }
 
-/// Returns whether the columns have one length and are at right angles, within rounding. Only then is the inverse,
-/// which the force uses, the transpose divided by the scale squared.
+/// Returns whether the columns are equally long and at right angles, within rounding. Only then is the inverse equal to
+/// the transpose divided by the scale squared, which the force relies on.
 bool is_rotation_and_scale(const glm::dmat3& matrix)
 {
     constexpr double ROUNDING = 1e-6;
@@ -278,7 +278,7 @@ Trace parse_trace(const std::string& whole, const std::string& origin)
             continue;
         }
         reader.read_first(document.root());
-        // The hash is checked before the lines, so that a damaged file is not reported as a mistake in a line.
+        // Checks the hash before reading the lines, so that damage to the file is not reported as a mistake in a line.
         if (reader.has_end()) text = without_trace_end(text, origin);
     }
     if (!has_head) fail(origin, " is empty; expected a line {\"shvr_stylus_trace\":1}");

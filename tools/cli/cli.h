@@ -43,7 +43,7 @@ void add_input_options(CLI::App& command, Common& common);
 /// Adds only --spacing and --unit, for commands that read volumes without a session. Refuses impossible values.
 void add_spacing_options(CLI::App& command, const std::function<void(const glm::dvec3&)>& take_spacing,
                          const std::function<void(const std::string&)>& take_unit);
-/// Adds the input options, --device, --budget-device, --budget-host and --threads.
+/// Adds the input options, and also --device, --budget-device, --budget-host and --threads.
 void add_device_options(CLI::App& command, Common& common);
 /// --budget-host
 void add_host_budget_option(CLI::App& command, Common& common, const std::string& help);

@@ -1,5 +1,5 @@
 #pragma once
-// Loops that advance a workbench until nothing is left to do.
+// For loops that advance a workbench until no work is left.
 
 #include <chrono>
 #include <cstdint>

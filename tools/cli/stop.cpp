@@ -95,7 +95,7 @@ void end_in_words()
 {
     for (const int number : HANDLED) {
         struct sigaction now {};
-        // If the parent process had a signal ignored, as shells do for background jobs, it stays ignored.
+        // A signal that the parent process had ignored, as shells do for background jobs, stays ignored.
         if (::sigaction(number, nullptr, &now) == 0 && now.sa_handler == SIG_IGN) continue;
         struct sigaction action {};
         action.sa_handler = stop;

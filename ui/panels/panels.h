@@ -19,7 +19,7 @@ struct Layout {
 /// Name of the window that holds the side panels, for code that gives it the keyboard.
 inline constexpr const char* SIDE_PANEL = "Side panel";
 
-/// Returns whether a window of the interface was at that position in the last frame, in units of the interface.
+/// Returns whether a window of the interface covered the position `at` in the last frame, in units of the interface.
 bool covers(const glm::dvec2& at);
 
 /// Draws menu bar, tool bar, panels, status bar and the windows that are shown; appends the user's actions to
