@@ -321,7 +321,7 @@ std::string import_identity(const VolumeSource& source, const fs::path& origin, 
                        options.compressor.shuffle}},
                      {"version", sentence(spelled(options.version.value_or(OmeZarrVersion::v0_4)),
                                           options.has_shards ? " in shards" : "")}};
-    // A volume on another machine may change unnoticed, so random numbers prevent that its import is ever resumed.
+    // A volume on another machine may change unnoticed: random numbers make each import unique, so none is resumed.
     if (leads_to_network(origin)) document["once"] = {std::random_device{}(), std::random_device{}()};
     return document.dump(-1, ' ', true, Json::error_handler_t::replace);
 }

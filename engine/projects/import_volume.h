@@ -46,8 +46,8 @@ struct LabelImage {
     };
     std::vector<Color> colors{};
     std::string source{};  ///< path of the labelled image relative to the folder of labels; empty: not stated
-    /// The hash of the voxels of the image that was painted on (content_hash.h). It tells a mask from masks of other
-    /// images that have the same size. Empty: not stated.
+    /// The hash of the voxels of the image that was painted on (content_hash.h). It distinguishes a mask from masks of
+    /// other images of the same size. Empty: not stated.
     std::string painted_on{};
     /// The journal of the work at the time of saving: the name of its file, and the number and checksum of its last
     /// record.

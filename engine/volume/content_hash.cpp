@@ -192,7 +192,7 @@ void ChunkHasher::add(const Size3& chunk, const std::byte* voxels, size_t row_by
         for (int64_t y = 0; y < extent.y; ++y) {
             const std::byte* const row = voxels + size_t(z) * slice_bytes + size_t(y) * row_bytes;
             hasher.add({row, length});
-            // A row that starts with `voxel` and equals itself shifted by one voxel consists of equal voxels.
+            // All voxels are equal if the row starts with the first voxel and equals itself shifted by one voxel.
             const bool is_uniform = std::memcmp(row, voxels, voxel_bytes) == 0 &&
                                     std::memcmp(row, row + voxel_bytes, length - voxel_bytes) == 0;
             if (!is_uniform) digest.is_varied = 1;

@@ -39,13 +39,13 @@ private:
 };
 
 /// Reads a box of level 0 into `voxels`, and calls the callback with every readable part: the whole box if possible,
-/// otherwise blocks of the file (slices if it has no blocks). Adds unreadable parts to `gaps`. Without `gaps`, throws
-/// the first error. `Stopped` is always thrown on.
+/// otherwise blocks of the file (slices if it has no blocks). Adds unreadable parts to `gaps`; without `gaps`, throws
+/// the first error. `Stopped` always propagates.
 using TakePart = std::function<void(const VoxelBox& part, std::span<const std::byte> voxels)>;
 void read_parts(const VolumeSource& source, const VoxelBox& box, std::span<std::byte> voxels, Gaps* gaps,
                 const TakePart& take);
 
-/// Presents a volume, with the lowest value of its type, or NaN, in unreadable voxels. Both arguments must outlive it.
+/// A volume whose unreadable voxels have the lowest value of its type, or NaN. Both arguments must outlive this object.
 /// If there are several levels, reads of single bricks fail instead, since their callers know better how to show a
 /// missing brick.
 class GapSource final : public VolumeSource {

@@ -86,7 +86,7 @@ void halve_block(const HalvingRows<T>& rows, int64_t at, Length length, T* halve
         halved[length / 2] = mean_of<ROWS, T>(alone);
     }
     if constexpr (std::is_floating_point_v<T>) {
-        // If a mean is not finite, one of its voxels is not: it is computed again from the finite voxels alone.
+        // A mean that is not finite has a non-finite voxel: computes it again from the finite voxels alone.
         for (int64_t x = 0; x < length; x += 2) {
             if (std::isfinite(halved[x / 2])) continue;
             halved[x / 2] = mean_of_finite(rows, at + x, at + std::min<int64_t>(x + 2, length));
@@ -106,7 +106,7 @@ void halve(const HalvingRows<T>& rows, int64_t length, T* halved)
 
 }  // namespace halving
 
-/// Returns the most frequent label. Among equally frequent labels, 0 (background) comes last; then the smallest wins.
+/// Returns the most frequent label. Of equally frequent labels, returns the smallest that is not 0 (background).
 template <class T>
 void halve_labels(const HalvingRows<T>& rows, int64_t length, T* halved)
 {

@@ -41,7 +41,7 @@ constexpr int64_t MIN_VOXELS_OF_TAIL = 4 * TAIL;
 constexpr double MIN_UNITS = 10.0, MIN_STEPS = 2.0, MIN_SHARE = 0.01;
 constexpr int STEPS = 8;
 
-/// Fewer distinct values than this are labels or a few materials: none of them is then an outlier.
+/// If there are fewer distinct values than this, they are labels or a few materials, and none of them is an outlier.
 constexpr size_t MIN_VALUES_AT_END = 12;
 
 /// Fill values lie behind a gap of this many times the range of all other values. A smaller gap is sufficient for the

@@ -63,8 +63,8 @@ VolumeStatistics measure_integers(const Measured& measured)
 {
     using Unsigned = std::make_unsigned_t<T>;
     constexpr size_t VALUES = size_t{std::numeric_limits<Unsigned>::max()} + 1;
-    // Neighbouring voxels are often equal. Counting them in alternating tables avoids that an increment has to wait for
-    // the previous one.
+    // Neighbouring voxels are often equal. With alternating tables, an increment need not wait for the previous
+    // increment of the same counter.
     constexpr size_t TABLES = 4;
     std::vector<int64_t> counts(TABLES * VALUES);
     for_each_slab<T>(measured, 0.0, 1.0, [&](std::span<const T> voxels, int64_t times) {
@@ -86,7 +86,7 @@ VolumeStatistics measure_integers(const Measured& measured)
 
 // ---- Types with too many values to count each -----------------------------------------------------------------------
 
-/// Calls `take(value, count)` for finite values, which `count` voxels have. Returns the number of other voxels.
+/// Calls `take(value, count)` for finite values and the number of voxels that have them. Returns the number of others.
 template <class T, class Take>
 int64_t for_each_finite(const Measured& measured, double lower, double upper, const Take& take)
 {

@@ -26,7 +26,7 @@ uint64_t key_of(const Size3& tile)
     return uint64_t(tile.x) | uint64_t(tile.y) << 21 | uint64_t(tile.z) << 42;
 }
 
-/// Returns the smallest box of the level that is `levels` coarser which covers `box`.
+/// Returns the smallest box that covers `box`, in voxels of the level that is `levels` levels coarser.
 VoxelBox coarser(const VoxelBox& box, int levels)
 {
     const int64_t side = int64_t{1} << levels;

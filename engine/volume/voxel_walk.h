@@ -17,7 +17,7 @@ public:
     static VoxelWalk all(const VolumeSource& source);
     /// The voxels of stored blocks. All other voxels are counted by rest().
     static VoxelWalk stored(const VolumeSource& source, StoredBlocks blocks);
-    /// A sample: evenly spread pieces; or as many voxels of stored blocks, and in rest() their share of other voxels.
+    /// A sample: evenly spread pieces, or as many voxels of stored blocks, with a proportional number in rest().
     static VoxelWalk sample(const VolumeSource& source);
 
     int64_t voxels() const { return voxels_; }  ///< total of all boxes

@@ -74,7 +74,7 @@ private:
     int levels_;
 };
 
-/// A fill value, in the first bytes, as many as the voxel type has.
+/// The bytes of a fill value. For types of less than 8 bytes, the rest is unused.
 using FillVoxel = std::array<std::byte, 8>;
 
 std::unique_ptr<ImportPyramid> make_import_pyramid(const Size3& size, VoxelType type, int workers,

@@ -45,7 +45,7 @@ struct BrickPart {
 
 namespace ranges {
 
-/// The same intersection along one axis: from `begin` to `end`, in voxels of the cube.
+/// A brick, with the voxels next to it, meets a cube from `begin` to `end` along one axis, in voxels of the cube.
 struct Segment {
     int64_t brick, begin, end;
 };

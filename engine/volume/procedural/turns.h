@@ -12,7 +12,7 @@ inline constexpr double GOLDEN_TURNS = 0.38196601125010515;
 inline constexpr double LUCAS_TURNS = 0.27639320225002103;
 
 /// Returns cosine and sine of an angle in turns, with errors below 1e-15 (Taylor polynomials of degree 16 and 17 within
-/// 1/8 turn; exact for multiples of 1/4 turn). Requires turns < 2^40.
+/// 1/8 turn; exact for multiples of 1/4 turn). Requires |turns| < 2^40.
 inline glm::dvec2 direction_of(double turns)
 {
     constexpr double FULL_TURN = 6.283185307179586;
