@@ -3,7 +3,7 @@
 // file, not a recompilation. assets/devices/README.md describes the format.
 //
 // Schema 1 supports one input report, with positions. Schema 2 supports several, distinguished by id and length, and
-// devices that report speeds: rate control, for which silence means rest.
+// devices that report speeds (rate control); such a device is at rest when it sends no reports.
 //
 // Loading is strict: unknown keys, fields that exceed their report and layouts without a source are refused with a
 // one-sentence message. Any thread.
