@@ -12,7 +12,7 @@ namespace shvr {
 
 namespace {
 
-constexpr int64_t MAX_REGION_VOXELS = int64_t{1} << 24;  // 256 x 256 x 256; rows count as whole words
+constexpr int64_t MAX_REGION_VOXELS = int64_t{1} << 24;  // 256 x 256 x 256; each row counts as whole 32-bit words
 
 struct Range {
     int64_t begin, end;

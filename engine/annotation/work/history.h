@@ -40,7 +40,7 @@ public:
     size_t undoable() const { return done_; }
     size_t redoable() const { return commands_.size() - done_; }
 
-    /// The label of a step, also of a dropped one. Steps count from 0 (the oldest) to undoable() + redoable() - 1.
+    /// The label of a step, even if it was dropped. Steps count from 0 (the oldest) to undoable() + redoable() - 1.
     const std::string& label_of(size_t step) const { return commands_[step].command.label; }
     /// Number of the step's first record in the journal; 0 if it has no record.
     RecordNumber record_of(size_t step) const { return commands_[step].records.front(); }
