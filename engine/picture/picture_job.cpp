@@ -167,7 +167,7 @@ void PictureJob::begin_parts()
     }
 }
 
-/// Returns the largest side of parts at which two parts fit in memory: parts at borders need images of another size.
+/// Returns the largest part side at which memory holds two parts: a part at a border needs images of its own size.
 uint32_t PictureJob::part_side()
 {
     gpu::Memory& memory = renderer_.memory();

@@ -20,7 +20,7 @@ SelectOp nearest_selection(const Model& model);
 /// Returns the operation that links the selected node with the node nearest to it.
 LinkOp link_with_nearest(const Model& model);
 
-/// Moves the selected node to the probe. If several parts are selected, moves all by the offset of the nearest node.
+/// Moves the selected node to the probe; of several selected parts, moves the nearest node there and the rest along.
 MoveOp move_to_probe(const Model& model);
 
 /// Gives the selected nodes their mean radius times `factor`. If no node is selected, gives it to all internodes of the

@@ -60,7 +60,7 @@ void Reader::follow_reading()
     reading_.relevant_share = document.meter.share();
 }
 
-/// Returns whether to measure the probe's share: its label is on, no stroke runs, and a brush may have its radius.
+/// Returns whether to measure the probe's share: its label is on, no stroke runs, its radius is allowed for brushes.
 bool Reader::probe_is_measured() const
 {
     const Document& document = *document_;

@@ -11,7 +11,7 @@ namespace shvr::ui {
 /// Result of asking whether the open document may be closed (Workbench::leave).
 enum class Leave {
     now,
-    later,    ///< a save is in progress; the program stays usable, and must ask again
+    later,    ///< a save is in progress; the program stays usable, and asks again later
     refused,  ///< the document cannot be saved; `why` states the reason the first time
 };
 

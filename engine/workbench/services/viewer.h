@@ -1,5 +1,5 @@
 #pragma once
-// What the view shows: cameras, cutting and clip planes, slices; also picks points in the picture.
+// The view: cameras, cutting and clip planes, and slices. Also picks points in the picture.
 
 #include "engine/workbench/desk/service.h"
 
@@ -39,7 +39,7 @@ public:
     /// Draws the whole picture again.
     void look_again() { look_is_stale_ = true; }
     void look_from(const Camera& camera);
-    /// Uses the current camera and probe, not those of the screen, which lag if several actions come between frames.
+    /// Returns the pane for the current camera and probe; the screen's pane lags after several actions in a frame.
     Pane pane(size_t index) const;
     /// Returns the visible point at a pixel of a pane, in volume space; in a slice, the point of its plane. Null: none.
     std::optional<glm::dvec3> seen_at(const Pane& pane, const glm::dvec2& pixel) const;

@@ -38,7 +38,7 @@ void TapLink::begin_tick() noexcept
     }
 }
 
-/// Stores the time: that of the tick is the first time that the servo requests in it.
+/// Stores the tick's time: the first time that the servo requests during the tick.
 void TapLink::note_now(uint64_t now_ns) noexcept
 {
     if (!std::exchange(is_new_tick_, false)) return;
