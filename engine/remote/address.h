@@ -16,7 +16,7 @@ enum class Scheme { http, https, s3 };
 struct Address {
     Scheme scheme = Scheme::https;
     std::string host{};  ///< in lower case, with the port if one is stated; for s3, the bucket
-    std::string path{};  ///< percent-encoded; empty, or with a slash at its begin and none at its end
+    std::string path{};  ///< percent-encoded; empty, or with a slash at its start and none at its end
 
     bool operator==(const Address&) const = default;
 };

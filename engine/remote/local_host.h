@@ -9,7 +9,7 @@ namespace shvr {
 
 /// Whether a numeric IP address, or the host of a URL, is certainly a loopback, link-local or unspecified address.
 bool is_local_host(std::string host);
-/// Likewise for a socket address of `bytes` bytes.
+/// Like is_local_host, for a socket address of `bytes` bytes.
 bool is_local_address(const sockaddr& address, size_t bytes);
 
 }  // namespace shvr

@@ -111,7 +111,7 @@ void quality_fields(Fields& f, RenderSettings& render)
         if (name == each.name) take(render, each);
 }
 
-// How a picture is computed takes two functions, since the keys of a file are before and after the background.
+// The keys for how a picture is computed need two functions: in a file, the background lies between these keys.
 
 void sample_fields(Fields& f, RenderSettings& render)
 {

@@ -49,7 +49,7 @@ std::vector<double> values_of(std::span<const StudyRow> rows, const StudyConditi
 struct PairedDifference {
     Summary before, after;  ///< summaries of `base` and of `condition`, in these pairs only
     Summary difference;
-    size_t better = 0, worse = 0, equal = 0;  ///< numbers of pairs, by OutcomeColumn::better; if 0, all are equal
+    size_t better = 0, worse = 0, equal = 0;  ///< numbers of pairs, by OutcomeColumn::better; if it is 0, all are equal
     /// Whether the whole interval of the difference lies on the better side of 0.
     bool is_better(int better_sign) const;
     bool is_worse(int better_sign) const { return is_better(-better_sign); }

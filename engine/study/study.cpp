@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr double NO_SCORE = std::numeric_limits<double>::quiet_NaN();
 
-/// Returns the begin of a CSV file's name: "rows", or "hand-" with trait and factor if the item varies the hand.
+/// Returns the start of a CSV file's name: "rows", or "hand-" with trait and factor if the item varies the hand.
 std::string file_stem(const StudyItem& item)
 {
     if (item.trait >= hand_traits().size()) return "rows";

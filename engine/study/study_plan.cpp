@@ -39,7 +39,7 @@ StudyCondition without_touch(StudyCondition condition)
     return condition;
 }
 
-/// Returns the conditions that differ from the centre by one factor, and their counterparts without touch.
+/// Returns the conditions that differ from `centre` by one factor, and their counterparts without touch.
 std::vector<StudyCondition> conditions_around(const StudyCondition& centre)
 {
     std::vector<StudyCondition> conditions;

@@ -88,7 +88,7 @@ public:
             reporter_.show(told.fraction, sentence(std::fixed, std::setprecision(rate < 10.0 ? 1 : 0), rate, " MB/s"),
                            told.seconds_left);
         } catch (const Stopped&) {
-            // Only keeps the exception inside: the import checks for cancellation by itself and keeps finished chunks.
+            // Ignores `Stopped` here: the import itself checks for cancellation, and keeps finished chunks.
         }
     }
 

@@ -48,7 +48,7 @@ std::vector<MainComparison> comparisons_of(const StudyReport& report, StudyTask 
     return comparisons;
 }
 
-/// Finds the condition without touch with the best mean main outcome, and compares it in pairs with the centre.
+/// Compares the condition without touch that has the best mean main outcome with the central condition, in pairs.
 std::string best_free_hand(const StudyReport& report, StudyTask task)
 {
     const Outcome outcome = main_outcome(task);

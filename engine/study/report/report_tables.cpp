@@ -69,7 +69,7 @@ std::string thesis_part()
     return markup + mean_and_sd("people", columns);
 }
 
-/// Returns rows to compare algorithms with: simulated annotators without touch and at the centre, and people.
+/// Returns rows to compare algorithms with: simulated annotators without touch and in the central condition; people.
 std::string rows_of_hands(const StudyReport& report)
 {
     std::string markup;
