@@ -13,7 +13,7 @@ constexpr double GLANCE_M = 0.006;        ///< distance after which the eye chec
 constexpr double STROKE_M_PER_S = 0.008;  ///< slower than a reach, since the eye follows the probe
 constexpr int TOOL_TICKS = 16;            ///< ticks per frame: a window extends a stroke at 60 frames a second
 constexpr int STROKES = 3;                ///< at most, from one view
-constexpr double LEFT_UNPAINTED = 0.06;   ///< share of the visible surface that a careful annotator leaves unpainted
+constexpr double LEFT_UNPAINTED = 0.06;   ///< share of the visible surface that an average annotator leaves unpainted
 constexpr double EARLY = 0.7;             ///< share of a segment that is painted if painting stops early
 constexpr double BACK_CHECKED = 0.5;      ///< share of segments whose back an average annotator checks
 
