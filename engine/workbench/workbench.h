@@ -82,7 +82,7 @@ public:
     Work::Saved finish_save(const Progress& progress = {}) { return services_.saver.finish_save(progress); }
     /// Stops the save in progress, if any, at its next step. Files that are not complete by then keep their content.
     void cancel_save() { services_.saver.cancel_save(); }
-    /// Waits for the operation on groups in progress. Fails with the reason if its result did not become a step. An
+    /// Waits for the running operation on groups. Fails with the reason if its result did not become a step. An
     /// exception from `progress` cancels the operation.
     const OperationResult& finish_operation(const Progress& progress = {}) { return services_.groups.finish(progress); }
     /// Waits until the journal on disk has all changes. Fails with the reason if they cannot be written.
@@ -95,7 +95,7 @@ public:
     bool is_stirring() const { return services_.viewer.is_stirring(); }
     /// Returns whether the open document may be closed; call this once a frame. Saves all work as Save does; if only
     /// the view changed, saves it without a message. Read-only work is not saved, as a message has told the user
-    /// before. While the user has not decided which files to believe, the annotation is left in the journal.
+    /// before. While the user has not chosen between journal and changed files, the annotation stays in the journal.
     using Leave = ui::Leave;
     Leave leave(std::string& why) { return services_.saver.leave(why); }
     bool is_saving() const { return services_.saver.is_saving(); }
@@ -123,7 +123,7 @@ public:
     /// Returns whether to show the box of the cutting planes: while they are moved and for a short time afterwards.
     bool shows_cut_box() const { return services_.viewer.shows_cut_box(); }
     bool shows_full_screen() const { return services_.window.is_full_screen(); }
-    /// Returns how many voxels the preview showed when the last stroke began; null if no preview was shown.
+    /// Returns how many voxels the brush's preview showed when the last stroke began; null if no preview was shown.
     std::optional<int64_t> previewed_at_stroke() const { return services_.painter.previewed_at_stroke(); }
     /// opened_s(): when the open document was opened. openings(): how many documents were opened so far.
     double opened_s() const { return desk_.opened_s; }

@@ -33,8 +33,8 @@ struct ActionRow {
     Needs needs = Needs::document;
 };
 
-/// `fields(Fields&, Kind&)` visits the arguments. `why_not(const Model&, const Kind&)` returns the reason if the action
-/// would do nothing; empty: it is available. Service has `void act(const Kind&)`.
+/// `fields(Fields&, Kind&)` visits the arguments. `why_not(const Model&, const Kind&)` returns why the action would do
+/// nothing, or an empty text if it is available. `Service` must have `void act(const Kind&)`.
 template <class KindOfRow, class ServiceOfRow, class VisitFields, class WhyNot>
 struct FullRow : ActionRow {
     using Kind = KindOfRow;

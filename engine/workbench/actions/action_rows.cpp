@@ -33,7 +33,7 @@ constexpr const auto& full_row()
 template <class Kind>
 constexpr bool IS_SCRIPT_OP = std::is_constructible_v<ScriptOp, Kind>;
 
-/// Returns a visitor of the key "op", whose value names the action, followed by the action's arguments.
+/// Returns a function that visits the key "op", which holds the action's id, and then the action's arguments.
 Fields::Visit with_op(std::string& op, const Fields::Visit& arguments)
 {
     return [&op, arguments](Fields& f) {
@@ -55,7 +55,7 @@ Action read_kind(size_t index, std::string& id, const JsonNode& line)
     return kind;
 }
 
-/// Returns the ids of the registry and the names of scripts' operations, each once.
+/// Returns the ids of all actions and the names of all operations of scripts, without duplicates.
 std::vector<std::string_view> known_ids()
 {
     std::vector<std::string_view> ids;

@@ -20,7 +20,7 @@ std::string why_not_edited(const Model& model);
 std::string why_not_traced(const Model& model);
 std::string why_without_selection(const Model& model);
 std::string why_without_node(const Model& model);
-/// `group`: the group that new nodes or internodes of the trace would belong to.
+/// `group`: the group to which new nodes or internodes of the trace would belong.
 std::string why_without_group(const Model& model, uint8_t group);
 /// Condition of an operation on groups.
 std::string why_not_operated(const Model& model, const GroupOperation& operation);

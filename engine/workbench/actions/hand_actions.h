@@ -1,5 +1,5 @@
 #pragma once
-// Actions on the haptic device ("the hand"); devices are those in haptics/devices. The choice applies to all scans.
+// Actions on the haptic device ("the hand"); haptics/devices lists the devices. The chosen device applies to all scans.
 
 #include "engine/workbench/actions/action_row.h"
 

@@ -26,7 +26,7 @@ struct Zoom {  ///< in a slice: all slices
     double factor = 1.0;
 };
 
-/// Carries out a mouse drag in a map: moves the camera within the map's plane, or moves the slices.
+/// Carries out a mouse drag in a map: moves the camera in the overview's plane or, if the map is a slice, the slices.
 struct DragInMap {
     size_t pane = 0;
     glm::dvec2 pixels{0.0};

@@ -111,7 +111,7 @@ std::vector<const Shortcut*> Keymap::shortcuts_for(const Chord& chord) const
     for (const Shortcut& shortcut : shortcuts())
         if (std::ranges::any_of(chords_of(shortcut), [&](const Chord& bound) { return means(shortcut, bound, chord); }))
             found.push_back(&shortcut);
-    // If a shortcut is bound to the exact chord, drops shortcuts for which Shift only means "slower".
+    // If a shortcut is bound to the exact chord, drops shortcuts that are bound without Shift and only slowed by it.
     const auto is_exact = [&](const Shortcut* shortcut) {
         return std::ranges::find(chords_of(*shortcut), chord) != chords_of(*shortcut).end();
     };

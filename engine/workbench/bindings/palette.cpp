@@ -31,7 +31,7 @@ const std::vector<SessionKey>& keys_of_settings()
     return KEYS;
 }
 
-/// Returns whether name or meaning of the setting contain all words. Settings in lists, as "points.N", are never found.
+/// Returns whether name or meaning of the setting contain all words. Settings in lists ("points.N") never match.
 bool is_found(const SessionKey& key, std::string_view words)
 {
     std::string where = key.name + ' ' + key.meaning;
@@ -93,7 +93,7 @@ void add_shortcuts(std::vector<PaletteEntry>& entries, const Model& model, std::
     }
 }
 
-/// Adds settings found by the words in front of a value: "ambient 0.4".
+/// Adds the settings that match the words before a typed value, as in "ambient 0.4".
 void add_values(std::vector<PaletteEntry>& entries, const Model& model, std::string_view text)
 {
     const size_t space = text.rfind(' ');
@@ -152,7 +152,7 @@ std::vector<PaletteEntry> palette_entries(const Model& model, std::string_view t
         add_values(entries, model, text);
         add_listed(entries, model, text);
     }
-    // An action typed without arguments is invalid, but completed below: hides the error if there are other entries.
+    // If there are entries, hides the error that an action lacks its arguments: add_completions() offers to add them.
     if (!entries.empty() && text.find_first_of(" =") == text.npos) as_typed.clear();
     if (!is_done) entries.insert(entries.end(), as_typed.begin(), as_typed.end());
     add_completions(entries, text);

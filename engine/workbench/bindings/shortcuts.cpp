@@ -241,7 +241,7 @@ Action move_clip(const Model&, double amount)
 template <double DistanceBlend::*VALUE, int DIRECTION>
 Action blend(const Model& model, double amount)
 {
-    // The size is limited to 1, since a larger one hides everything behind some depth in the blend colour.
+    // The size is limited to 1: a larger size would cover everything beyond some depth with the blend colour.
     constexpr double MOST = VALUE == &DistanceBlend::size ? 1.0 : MAX_BLEND;
     return edited(model.session, [&](Session& s) {
         const double next = std::clamp(s.blend.*VALUE + BLEND_STEP * DIRECTION * amount, 0.0, MOST);
@@ -316,9 +316,9 @@ constexpr Shortcut both(const char* id, const char* group, const char* name, Mod
     return {id, group, name, mode, action, {keys, keys}, is_by_position};
 }
 
-// In the thesis, planes and blending have letters as keys, and the keys that push outwards or pull back add Ctrl. Today
-// Ctrl+C, Ctrl+V and Ctrl+Y have other meanings, and a letter typed by mistake must not cut the volume: those shortcuts
-// have no keys until the user assigns some.
+// In the thesis, letter keys move planes and change blending, and Ctrl reverses them. Today Ctrl+C, Ctrl+V and Ctrl+Y
+// have other meanings, and a letter typed by mistake must not cut the volume. In the modern key set, these shortcuts
+// therefore have no keys until the user assigns some.
 constexpr Shortcut SHORTCUTS[] = {
     {"undo", WORK_KEYS, "Undo", Mode::repeated, plain<UndoOp>, {"Ctrl+Z", "Ctrl+Z"}},
     {"redo", WORK_KEYS, "Redo", Mode::repeated, plain<RedoOp>, {"Ctrl+Y Ctrl+Shift+Z", "Ctrl+Shift+Z"}},

@@ -32,8 +32,8 @@ struct WorkbenchOptions {
     bool has_preferences = true;      ///< false: uses default preferences, and saves no changes of them
     std::function<double()> now_s{};  ///< returns the seconds of any clock; null: uses the system's clock
     std::string version{};            ///< the program's, for reports; empty: unknown
-    DeviceSource devices{};           ///< where haptic devices come from; without functions: from this machine
-    /// Slices follow a probe that leaves their plane, and their move is logged; false: only logged actions move slices.
+    DeviceSource devices{};           ///< lists and opens haptic devices; without functions: those of this machine
+    /// Slices follow a probe that leaves their plane, by an action that is logged; false: only the script moves them.
     bool slices_follow = true;
     TextDrawer draw_texts{};  ///< draws labels into picture files; null: no labels
 };

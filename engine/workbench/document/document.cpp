@@ -105,7 +105,7 @@ Document::Document(Renderer& renderer, Read read, const View::Options& view_opti
 }
 
 /// Selects a harmless tool, so that the first drag in an opened scan changes nothing, whatever tool was used last.
-/// Sessions of older versions, whose right button painted, also state the paint tool. --set may still choose a tool.
+/// Sessions of older versions, in which the right button painted, state the paint tool, too. --set may still choose it.
 void Document::begin_with_turning()
 {
     const bool is_chosen =

@@ -86,7 +86,7 @@ struct Document {
     /// structure it touches, a node in its ball, or a centre line that passes through its ball.
     ToolPlace tool_place() const;
     glm::dvec3 tool_voxel() const { return tool_place().point / volume().spacing; }
-    /// Returns where tools would act if the probe were at `point` and nothing attracted the tools.
+    /// Returns where tools would act if the probe were at `point` and the tools did not snap to anything.
     ToolPlace tool_place_at(const glm::dvec3& point) const;
     /// Returns which voxels the hand can feel: by default, those that the view shows.
     FeltLimits felt_limits() const;
@@ -153,8 +153,8 @@ struct Document {
     std::shared_ptr<Saving> begin_save(Parts parts = Parts::all);
     /// Ends a save. Returns the parts that were written. After a save under another name, the document has that name.
     Work::Saved end_save(Saving& saving);
-    /// Returns whether nothing but view or probe changed, and the session has a file. Only then is the change saved,
-    /// without a message, so that merely looking at a volume creates no file.
+    /// Returns whether only the view or the probe changed and the session has a file. Such a change is saved silently;
+    /// without a session file it is not saved, so that merely looking at a volume creates none.
     bool has_view_to_keep() const;
     /// Returns whether settings need saving. Overridden settings apply to this run only, so they prevent saving.
     bool has_settings_to_save() const { return !edits_are_saved() && overridden_.empty(); }
@@ -206,7 +206,7 @@ private:
     std::filesystem::path session_path_;
     std::string text_;                       ///< contents of the session file to write
     std::optional<std::string> text_there_;  ///< contents of the existing file when this process last read or wrote it
-    std::optional<AnnotationNames> names_;   ///< names to write into the session file, if only they are saved
+    std::optional<AnnotationNames> names_;   ///< if only names of annotation files are saved: the names
     std::filesystem::path names_path_;
     Session edits_;
     Place place_;

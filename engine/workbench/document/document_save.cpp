@@ -79,8 +79,8 @@ std::shared_ptr<Document::Saving> Document::begin_save(Parts parts)
     return saving;
 }
 
-/// Earlier versions stored a byte for every voxel of a project. When such a project is saved, its painted bricks alone
-/// go into files of new names; the old files stay.
+/// Earlier versions stored a byte for every voxel of a project. When such a project is saved, only its painted bricks
+/// are written, to files with new names; the old files stay.
 void Document::name_sparse_files(Parts parts, Saving& saving)
 {
     const bool is_named_here =
@@ -96,7 +96,7 @@ void Document::name_sparse_files(Parts parts, Saving& saving)
     saving.names_path_ = session_path;
 }
 
-/// Writes the names into the current session file, even if another program wrote that file just now. Keeps all else.
+/// Updates only the names of annotation files in the current session file, even if another program has just written it.
 void Document::Saving::write_names()
 {
     const std::optional<std::string> there = text_of_session(names_path_);
@@ -105,7 +105,7 @@ void Document::Saving::write_names()
     write_file_atomically(names_path_, std::as_bytes(std::span(text_)));
 }
 
-/// Writes the session. If another program changed the file meanwhile, keeps that version, and names it in the notice.
+/// Writes the session. If another program changed the file meanwhile, keeps its version in a copy, named in the notice.
 void Document::Saving::write_session()
 {
     std::optional<KeptFile> kept;

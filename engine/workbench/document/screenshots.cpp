@@ -7,7 +7,7 @@
 
 namespace shvr::ui {
 
-/// Returns a path such as "scan-view-1.png" with the first unused number. A large picture in progress uses its number.
+/// Returns a path such as "scan-view-1.png" with the first unused number. A large picture in progress has one in use.
 std::filesystem::path Screenshots::free_path(const std::filesystem::path& stem) const
 {
     for (int number = 1;; ++number) {

@@ -50,7 +50,7 @@ public:
     /// Drops pending requests to the graphics device.
     void drop_queries() { relevance_.drop(), asked_.reset(); }
 
-    /// Starts recording with the next frame. Restarts the servo, so that a replay begins in the same state.
+    /// Starts recording at the next frame. Restarts the servo, so that a replay can begin in the same state.
     void begin_recording(const std::filesystem::path& path);
     /// Returns null while nothing is recorded.
     const StylusRecorder* recorder() const { return recorder_.get(); }

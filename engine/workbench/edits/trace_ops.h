@@ -10,10 +10,10 @@ namespace shvr::ui {
 
 /// Returns the operation that adds a node at the probe, in the active group and linked with the selected node.
 NodeOp node_at_probe(const Model& model);
-/// Like node_at_probe(), unless part of the trace attracts the tools. If an existing node does, links the selected node
-/// with it or, if they are linked already, selects it. If a centre line does, adds a node that divides the line.
+/// Like node_at_probe(), but if the tools snap to an existing node, links the selected node to that node or, if they
+/// are linked already, selects it; if the tools snap to a centre line, adds a node that divides the line.
 Action node_or_link_at_probe(const Model& model);
-/// Returns the operation that replaces adding a node where part of the trace attracts the tools; null if none does.
+/// Returns the operation to use instead of adding a node if the tools snap to part of the trace; null if they do not.
 std::optional<Action> trace_op_at(const ToolPlace& place, const TraceGraph& trace, const glm::dvec3& spacing);
 /// Returns the selection of the nearest node or, if that node is selected already, of its nearest internode.
 SelectOp nearest_selection(const Model& model);
@@ -23,8 +23,8 @@ LinkOp link_with_nearest(const Model& model);
 /// Moves the selected node to the probe; of several selected parts, moves the nearest node there and the rest along.
 MoveOp move_to_probe(const Model& model);
 
-/// Gives the selected nodes their mean radius times `factor`. If no node is selected, gives it to all internodes of the
-/// selected internode's group or else of the active group; these internodes then no longer taper.
+/// Gives the selected nodes their mean radius times `factor`. If no node is selected, scales all internodes of the
+/// selected internode's group or, without a selection, of the active group; these internodes then no longer taper.
 RadiusOp scaled(const Model& model, double factor);
 /// Gives all nodes of the active group the same radius: the mean of their radii, times `factor`.
 RadiusOp scaled_nodes_of_group(const Model& model, double factor);

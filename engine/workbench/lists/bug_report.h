@@ -1,6 +1,6 @@
 #pragma once
-// Texts about messages to the user, and a report to paste into an issue. Pure except for the time zone, which the clock
-// has; main thread only.
+// Texts about messages to the user, and a report to paste into an issue. Pure functions, except that times are in the
+// system's time zone; main thread only.
 
 #include <string>
 

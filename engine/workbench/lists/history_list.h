@@ -12,7 +12,7 @@ namespace shvr::ui {
 /// Row N is the state after N steps: row 0 is the initial state, row `rows - 1` the newest state.
 struct HistoryList {
     const History* history = nullptr;
-    size_t done = 0;        ///< number of steps done; changed settings that are not a step yet do not count
+    size_t done = 0;        ///< number of steps done, without changed settings that are not a step yet
     bool is_ahead = false;  ///< true: changed settings are not a step yet; one more row, the last, shows them
 
     size_t rows() const;

@@ -1,5 +1,5 @@
 #pragma once
-// Read-only view of the open document; while no document is open, of an empty session.
+// Read-only view of the open document or, while no document is open, of an empty session.
 
 #include <filesystem>
 #include <span>
@@ -21,8 +21,8 @@ struct DocumentModel {
     const std::filesystem::path& session_path;
     bool has_session_file = false;  ///< false: no session file exists; the document is a scan that was never saved
     std::string_view holder{};      ///< another process that writes the project, so that this window is read-only
-    std::string_view outside{};     ///< files that the session may not write, since they are outside its folder:
-                                    ///< unless this is empty, the window is read-only
+    std::string_view outside{};     ///< files that the session may not write, since they are outside its folder; if
+                                    ///< there are any, the window is read-only
     const MessageLog& messages;
 };
 

@@ -42,7 +42,7 @@ struct Finding {
 /// Describes the servo's state with causes, one sentence each, most severe first; omits force if guidance is off.
 std::vector<Finding> findings_of(const HandView& hand, const ServoState& servo, bool is_guided);
 
-/// Returns a text such as "60000 steps, 0.02 % of them late".
+/// Describes the servo's timing in a text such as "60000 steps, 0.02 % of them late".
 std::string rhythm_in_words(const ServoState& servo);
 /// Returns whether the servo has realtime priority and, if it has not, how the user can allow it.
 Finding realtime_in_words(bool is_realtime, uint64_t allowed_priority);

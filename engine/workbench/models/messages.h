@@ -57,8 +57,8 @@ public:
         return messages_.empty() ? NOTHING : messages_.back().text;
     }
     uint64_t count() const { return count_; }
-    /// Returns the first message of that weight whose number is above `count`; null if there is none. Dropped messages
-    /// are not found.
+    /// Returns the first message of that weight with a number above `count`; null if there is none or if it was
+    /// dropped.
     const Message* first_after(uint64_t count, Weight weight) const
     {
         for (const Message& message : messages_)

@@ -56,7 +56,7 @@ struct OpeningModel {
     /// Reason why the last attempt to open a file failed, and the file's path; empty: it did not fail.
     std::string_view open_failure{};
     const std::filesystem::path* failed_path = nullptr;
-    /// Why the open file seems to be a label image, not a scan; empty: it does not, or the user dismissed the notice.
+    /// Why the open file is probably a label image, not a scan; empty: it is not, or the user dismissed the notice.
     std::string_view looks_like_labels{};
 };
 

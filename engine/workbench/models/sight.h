@@ -16,7 +16,7 @@ struct Pointer {
 
 /// Values of the volume and the annotation at a point.
 struct Reading {
-    glm::dvec3 voxel{0.0};            ///< where values are read: at the probe or, if the mouse is over a slice, there
+    glm::dvec3 voxel{0.0};            ///< where values are read: under the mouse if over a slice, else at the probe
     bool is_inside = false;           ///< whether the voxel is in the volume; if not, the next three members are unset
     std::optional<double> intensity;  ///< in the file's units; null: could not be read, or is not read yet
     double offset = 0.0;              ///< density offset added by painting

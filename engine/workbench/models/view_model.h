@@ -21,7 +21,7 @@ struct ViewModel {
     std::optional<Pointer> pointer{};          ///< position of the mouse while it is over the picture; otherwise null
     std::optional<glm::dvec3> picked_pivot{};  ///< pivot picked by the user, in volume space; used if settings say so
     bool view_is_complete = true;
-    bool view_is_limited = false;  ///< drawn coarser than the screen: the visible bricks exceed the memory budget
+    bool view_is_limited = false;  ///< drawn coarser than the screen: visible bricks exceed the memory budget
 };
 
 /// Made by the reader. Lengths in voxels.
@@ -35,8 +35,8 @@ struct ReadingModel {
 /// Made by the prober.
 struct ProbeModel {
     glm::dvec3 probe_voxel{0.0};
-    glm::dvec3 tool_voxel{0.0};              ///< where tools act: at the probe, or at a structure that attracts
-                                             ///< them (FeelSettings)
+    glm::dvec3 tool_voxel{0.0};              ///< where tools act: at the probe, or where they snap to a structure
+                                             ///< (FeelSettings)
     std::optional<uint32_t> tool_node;       ///< node that tools act at
     std::optional<uint32_t> tool_internode;  ///< internode that tools act on
 };

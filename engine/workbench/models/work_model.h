@@ -23,7 +23,7 @@ struct TraceModel {
     const TraceGraph& trace;
     std::optional<uint32_t> nearby_node;  ///< near the probe, and not selected
     bool drags_node = false;
-    bool is_cut = false;  ///< the last deletion cut the trace in two, and the two ends are not linked again yet
+    bool is_cut = false;  ///< the last deletion cut the trace, and its two ends are not linked again yet
 };
 
 /// Made by the settings' editor.
@@ -37,7 +37,7 @@ struct SaveModel {
     bool is_saved = true;
     bool is_saving = false;               ///< a save is in progress; changes made since it began are not part of it
     bool is_saving_as = false;            ///< the save is under another name: until it ends, commands are refused
-    std::span<const Dispute> disputes{};  ///< saved files that others changed, for the user to choose; empty: none
+    std::span<const Dispute> disputes{};  ///< saved files that others changed; the user must choose; empty: none
 };
 
 }  // namespace shvr::ui

@@ -68,7 +68,7 @@ void FileTaker::act(const Open& action)
     others_.begin_open(action.path, lines_of(action.settings), {}, action.settings.empty());
 }
 
-/// Opens the user's copy of the example. The shipped example must stay unchanged: other users open it, too.
+/// Opens the user's own copy of the example. The shipped example stays unchanged, since other users open it, too.
 void FileTaker::act(const OpenExample&)
 {
     if (options_.settings.empty())
@@ -173,7 +173,7 @@ void FileTaker::ask_what_it_is(UnclearFile file)
 }
 
 /// Takes several files. Annotation that is dropped with a scan must not be added to the scan that is still open. A
-/// volume of the open scan's size counts as a scan if a mask is dropped with it; if not, the user is asked.
+/// volume of the open scan's size counts as a scan if a mask is dropped with it; otherwise, the user is asked.
 void FileTaker::take_together(std::vector<std::filesystem::path> paths)
 {
     std::optional<VolumeInfo> volume;
@@ -220,7 +220,7 @@ struct FileTaker::ReadFile {
     std::string text{};          ///< contents of a transfer function
     std::shared_ptr<const shvr::Document> found{};
     LoadNotes notes{};
-    Groups groups{}, looks{};  ///< the document's groups, and these with the names and colours that a mask adds
+    Groups groups{}, looks{};  ///< the document's groups, without and with the names and colours that a mask adds
 
     FileUse use() const
     {
@@ -231,7 +231,7 @@ struct FileTaker::ReadFile {
     }
 };
 
-/// Never opens a document in place of the open scan, whatever the file contains, since the user asked for annotation.
+/// Never opens a document in place of the open scan, whatever the file contains: the user asked to add annotation.
 void FileTaker::act(const LoadAnnotation& action)
 {
     unclear_.reset();
@@ -351,7 +351,7 @@ void FileTaker::load_transfer_function(const ReadFile& read)
     say("The transfer function of " + read.path.string() + " is taken; undo takes it back");
 }
 
-/// Makes one history step of the data that was read. For a mask, the step includes names and colours of groups that the
+/// Adds the data that was read as one history step. For a mask, the step includes names and colours of groups that the
 /// mask file states and the session lacks.
 void FileTaker::load(const ReadFile& read)
 {

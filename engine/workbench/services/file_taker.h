@@ -13,7 +13,7 @@ public:
         Call<void(const std::filesystem::path&)> allow_outside;
         Call<void(const std::filesystem::path& path, const std::vector<std::string>& settings,
                   std::vector<std::filesystem::path> taken_into_it, bool asks)>
-            begin_open;  ///< `asks`: asks first if it looks like a label image and a scan is open
+            begin_open;  ///< `asks`: if a scan is open and the file looks like a label image, asks first
         Call<void(Session)> take_session;
         Call<void(const Set&)> set;
         Call<void()> record_settings;

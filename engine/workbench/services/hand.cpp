@@ -11,8 +11,8 @@ namespace shvr::ui {
 namespace {
 
 constexpr double MAX_PUCK_STEP_S = 0.1;    ///< limits motion per step, so that a hung frame does not move the view far
-constexpr double TAPS_PER_SECOND = 5.0;    ///< rate at which a held button repeats its action, as held keys do
-constexpr double MAX_BUTTON_STEP_S = 0.5;  ///< limits repetition per step, so that a hung frame causes no burst of it
+constexpr double TAPS_PER_SECOND = 5.0;    ///< rate at which a held button repeats its action, like a held key
+constexpr double MAX_BUTTON_STEP_S = 0.5;  ///< limits repeats per step, so that a hung frame causes no burst
 
 std::filesystem::path free_trace_path(const std::filesystem::path& stem)
 {
@@ -51,7 +51,7 @@ TouchSettings Hand::touch_settings() const
         .camera = document.camera,
         .view_height = pixel_size(document.camera, {1, 1}, glm::distance(document.camera.eye, document.camera.target)),
         .scale = document.session.interaction.workspace_scale,
-        // The felt voxels lag behind a volume that moves with the stylus, so forces are off during such a motion.
+        // While the volume moves with the stylus, the felt voxels lag behind it, so forces are switched off.
         .lets_go = hand_.is_let_go || grab_.has_value(),
         .source = document.source,
         .offsets = &document.annotator.document().density,

@@ -148,7 +148,7 @@ void Hand::act(const FindDevices&)
     say("Looking for haptic devices");
 }
 
-/// Reopens the device, which makes it calibrate. If the user must do something for this, a message says what.
+/// Reopens the device, which makes it calibrate. If calibration needs the user's help, a message says how.
 void Hand::act(const CalibrateDevice&)
 {
     if (!device_) fail("no haptic device is in use; expected one to calibrate");

@@ -104,7 +104,7 @@ struct Opener::ReadResult {
     std::string looks_like_labels{};
 };
 
-/// Starts reading on the worker; called again if the open document's journal, which was read too, changed since.
+/// Starts reading on the worker. Called again if the open document's journal, which was read too, has changed since.
 void Opener::read_next()
 {
     Opening& opening = *opening_;
@@ -194,7 +194,7 @@ bool Opener::asks_what_it_is()
     return true;
 }
 
-/// Returns whether the open document is saved and, if its journal was read, the journal has not changed since.
+/// Returns whether the open document is saved and, if the job read its journal, whether the journal is still unchanged.
 bool Opener::is_ready_to_load()
 {
     if (!document_) return true;

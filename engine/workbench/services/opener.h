@@ -63,7 +63,7 @@ public:
     bool cancel(Jobs::Number number);
     /// Handles a finished job if it is the reading job of the opening. Returns whether it is.
     bool end_reading(const Jobs::Finished& job);
-    /// add_loading: adds an opening that loads onto the device. add_read: adds an opening whose reading job just ended.
+    /// add_loading: adds the opening if it is loading onto the device. add_read: adds it if its reading job just ended.
     void add_loading(std::vector<Jobs::State>& states) const;
     void add_read(std::vector<Jobs::State>& states) const;
     /// Unloads the open document, to make room on the device for another one.
@@ -96,7 +96,7 @@ private:
     const Others others_;
     std::shared_ptr<Opening> opening_;                     ///< null: nothing is being opened
     std::shared_ptr<std::exception_ptr> awaited_failure_;  ///< failure of the opening for which `open` waits
-    Jobs::Number next_return_ = Jobs::Number{1} << 48;     ///< for openings by bring_back(); above all job numbers
+    Jobs::Number next_return_ = Jobs::Number{1} << 48;     ///< number for the next bring_back(), above all job numbers
     std::unique_ptr<Document> away_;  ///< the open document while the device has no room for it next to another one
     std::set<std::filesystem::path> allowed_outside_;
     std::vector<std::string> recovered_;

@@ -19,7 +19,7 @@ void Opener::add_loading(std::vector<Jobs::State>& states) const
 
 void Opener::add_read(std::vector<Jobs::State>& states) const
 {
-    // Adds an opening whose reading job has ended but whose result has not been used yet.
+    // Adds the opening if its reading job has ended but its result has not been used yet.
     if (opening_ && std::ranges::find(states, opening_->number, &Jobs::State::number) == states.end())
         states.push_back(state_of(*opening_));
 }

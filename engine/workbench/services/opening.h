@@ -20,7 +20,7 @@ struct Opener::Opening {
     std::shared_ptr<Document::Read> read{};        ///< null: still being read
     std::shared_ptr<std::exception_ptr> thrown{};  ///< exception from the job
     uint64_t journal_bytes = 0;                    ///< size of the open document's journal when reading began
-    std::optional<Session> pictured{};             ///< if the opened file is a picture: its look
+    std::optional<Session> pictured{};             ///< the look to apply, if the opened file is a picture
     std::string looks_like_labels{};               ///< as in OpeningModel
     std::unique_ptr<Scene> scene{};                ///< scene being loaded
 };

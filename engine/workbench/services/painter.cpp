@@ -12,7 +12,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// Time without a new brick after which a stroke that waits for bricks is abandoned.
+/// Time after which a stroke that waits for bricks is abandoned, if no new brick arrives.
 constexpr double PATIENCE_S = 20.0;
 
 /// Returns whether a stroke found almost no voxels to paint, compared with the volume within the brush's radius.
@@ -147,7 +147,7 @@ std::string Painter::finish_stroke()
     return unpainted;
 }
 
-/// Advances the stroke. Returns false while memory is insufficient. Stores why anything else failed in `unpainted`.
+/// Advances the stroke. Returns false while memory is insufficient. Stores the reason of other failures in `unpainted`.
 bool Painter::tries_stroke(std::string& unpainted)
 {
     try {
@@ -188,7 +188,7 @@ std::string Painter::how_to_reach_this() const
            keeper_.with_key(", and ", "threshold_here", " sets the threshold from it");
 }
 
-/// Updates the preview of the brush. A running stroke needs no preview, since it shows its effect itself.
+/// Updates the preview of the brush. Shows no preview during a stroke, since the stroke itself shows its effect.
 void Painter::follow_preview()
 {
     Document& document = *document_;
@@ -201,7 +201,7 @@ void Painter::follow_preview()
         const bool is_of_budget = dynamic_cast<const gpu::BudgetError*>(&error) != nullptr;
         if (dynamic_cast<const gpu::DeviceLost*>(&error) != nullptr) throw;
         if (dynamic_cast<const gpu::MemoryError*>(&error) != nullptr && !is_of_budget) throw;  // there may be some soon
-        // The brush is too large for a preview, or a file cannot be read: switches the preview off.
+        // The brush is too large for a preview, or a file cannot be read: switch the preview off.
         document.session.probe.preview = false;
         others_.note_edit();
         document.previewer.want(std::nullopt);

@@ -26,7 +26,7 @@ public:
     void begin_document() { journal_failure_.clear(); }
     /// Extends a stroke that is in progress to the probe's position.
     void extend_stroke();
-    /// Runs steps until the current stroke is fully painted. Returns why part of it was not painted; empty: all was.
+    /// Advances until the current stroke is fully painted. Returns why part of it could not be painted; empty: all was.
     std::string finish_stroke();
     /// Waits, for a limited time, until strokes that have ended are fully painted.
     void await_strokes();
@@ -36,7 +36,7 @@ public:
     bool is_stuck() const;
     /// Returns the message about an abandoned stroke.
     static std::string why_stuck();
-    /// Returns how many voxels the preview showed when the last stroke began; null if no preview was shown.
+    /// Returns how many voxels the brush's preview showed when the last stroke began; null if no preview was shown.
     std::optional<int64_t> previewed_at_stroke() const { return previewed_at_stroke_; }
     PaintModel model() const;
 

@@ -64,7 +64,7 @@ void Photographer::add_loading(std::vector<Jobs::State>& states) const
 void Photographer::act(const Screenshot& action)
 {
     if (!action.is_large) {
-        document_->painted_at.reset();  // the probe's ball must be in the picture, as in one drawn from the session
+        document_->painted_at.reset();  // shows the probe's ball in full, as pictures drawn from the saved session do
         screenshots_.take();
         return say("The screenshot will be taken when the picture is sharp");
     }

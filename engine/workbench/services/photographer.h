@@ -19,7 +19,7 @@ public:
     bool has_large() const { return screenshots_.has_large(); }
     bool is_writing() const { return screenshots_.is_writing(); }
     void wait() const { screenshots_.wait(); }
-    /// Cancels the large screenshot in progress, if any, and reports `by` as the cause.
+    /// Cancels the large screenshot in progress, if any, with a message that names `by` as the cause.
     void drop_large(const char* by);
     /// Cancels the large screenshot in progress if its job number is `number`. Returns whether that was the case.
     bool cancel(Jobs::Number number);

@@ -26,7 +26,7 @@ glm::dvec3 in_plane_of(const glm::dvec3& probe, const Pane& seen, const glm::dve
 
 Prober::Prober(Desk& desk, Others others) : Service(desk), others_(std::move(others)) {}
 
-/// Interrupts a stroke in progress, so that nothing is painted between the probe and its next position.
+/// Interrupts the stroke in progress, so that the path between the probe and its next position is not painted.
 void Prober::lift()
 {
     if (document_->annotator.stroke_is_open()) document_->annotator.lift_stroke();

@@ -33,7 +33,7 @@ glm::dvec3 Reader::voxel_to_read() const
 }
 
 /// Reads the intensity at the probe or pointer if its voxel changed, and requests the relevant share of the probe's
-/// ball. If reading from a file takes long, reads less often, so that reading takes at most a tenth of the time.
+/// ball. If reads from the file are slow, makes fewer of them, so that they take at most a tenth of the time.
 void Reader::follow_reading()
 {
     Document& document = *document_;
@@ -60,7 +60,7 @@ void Reader::follow_reading()
     reading_.relevant_share = document.meter.share();
 }
 
-/// Returns whether to measure the probe's share: its label is on, no stroke runs, its radius is allowed for brushes.
+/// Returns whether to measure the probe's share: its label is shown, no stroke runs, and brushes may have its radius.
 bool Reader::probe_is_measured() const
 {
     const Document& document = *document_;
@@ -91,7 +91,7 @@ void Reader::read_at(const glm::dvec3& voxel)
         reading_.intensity =
             densities_in(*document.source, work.density, {at, at + int64_t{1}}).values[0] - reading_.offset;
     } catch (const Error&) {
-        // A voxel that cannot be read has no value here. Drawing the voxel reports the error.
+        // Without a value, the reading is empty. The renderer reports the error when it draws the voxel.
     }
 }
 

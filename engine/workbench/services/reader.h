@@ -36,7 +36,7 @@ private:
     PreferenceKeeper& keeper_;
     const Others others_;
     Reading reading_;
-    std::optional<glm::dvec3> read_voxel_;  ///< voxel, in whole coordinates, whose intensity `reading_` states
+    std::optional<glm::dvec3> read_voxel_;  ///< voxel, in whole coordinates, that has the intensity in `reading_`
     uint64_t read_revision_ = 0;            ///< revision of the paint
     double read_again_s_ = 0.0;             ///< earliest time of the next read, which limits the time spent reading
     std::string clipboard_;

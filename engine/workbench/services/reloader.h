@@ -23,7 +23,7 @@ public:
 
     void advance() override;
     bool advances_without_document() const override { return true; }
-    /// Requests a reload. Fails if the volume is too large for the session's settings. `before`: the previous settings.
+    /// Requests a reload. Fails if the volume is too large for the session's settings. `before`: the earlier settings.
     void want(const RenderSettings& before);
     bool is_wanted() const { return reload_ != nullptr; }
     /// Cancels the reload. Returns whether there was one.

@@ -36,7 +36,7 @@ void Saver::act(const SaveAs& action)
     save_to(action.path);
 }
 
-/// Requests a save. If a stroke is in progress, ends it; the save begins once it is fully painted, and so contains it.
+/// Requests a save. If a stroke is in progress, ends it; the save begins once the stroke is painted, and contains it.
 void Saver::save_to(const std::filesystem::path& path)
 {
     Annotator& annotator = document_->annotator;
@@ -53,7 +53,7 @@ void Saver::follow_save()
     if (!wanted_save_ || save_) return;
     Annotator& annotator = document_->annotator;
     if (annotator.stroke_is_running()) {
-        renderer_.scene().advance();                              // receives the stroke's bricks even without a picture
+        renderer_.scene().advance();                              // the stroke needs bricks even if no picture is drawn
         if (annotator.stroke_is_open()) others_.note_progress();  // a hand may rest
         if (!others_.is_stuck()) return;
         annotator.drop_strokes();
@@ -184,7 +184,7 @@ Leave Saver::leave(std::string& why)
         if (asks && !document_->has_settings_to_save()) return Leave::now;
         if (!asks && document_->is_saved() && !is_running) {
             if (!document_->has_view_to_keep() || std::exchange(has_tried_view_, true)) return Leave::now;
-            begin_save(false, Document::Parts::session);  // if only the view is unsaved, failing deserves no message
+            begin_save(false, Document::Parts::session);  // no message if this fails, since only the view is unsaved
             return Leave::later;
         }
         if (asks)

@@ -1,5 +1,5 @@
 #pragma once
-// Saves the document, in place or elsewhere, and before leaving. Copies its data at once; a worker writes the files.
+// Saves the document, in place or elsewhere, also before it closes. Copies its data at once; a worker writes the files.
 
 #include <set>
 
@@ -12,7 +12,7 @@ namespace shvr::ui {
 enum class Leave {
     now,
     later,    ///< a save is in progress; the program stays usable, and asks again later
-    refused,  ///< the document cannot be saved; `why` states the reason the first time
+    refused,  ///< the document cannot be saved; `why` states the reason, but only once
 };
 
 class Saver : public Service {
@@ -80,7 +80,7 @@ private:
     std::string unpainted_;          ///< why part of the stroke before the save could not be painted
     std::string save_failure_;       ///< why the last save failed; empty if it succeeded
     Work::Saved saved_;              ///< result of the last save
-    bool has_tried_view_ = false;    ///< saving the view was tried; even if it failed, the document may be closed
+    bool has_tried_view_ = false;    ///< the view was saved, or could not be; the document may be closed
     bool is_leaving_ = false;        ///< the user wants to leave; if the save fails, leaving is refused
     std::set<Jobs::Number> copies_;  ///< copies that a saver is writing
     bool told_of_writers_ = false;

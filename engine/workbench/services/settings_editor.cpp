@@ -12,7 +12,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// Returns whether both sessions give the same picture of the volume. Settings that do not affect it may differ.
+/// Returns whether both sessions give the same picture of the volume. Other settings may differ.
 bool look_the_same(Session before, const Session& after)
 {
     before.probe = after.probe;  // drawn separately over the picture, like distances
@@ -109,7 +109,7 @@ void SettingsEditor::take_session(Session session)
     if (!look_the_same(std::move(before), after)) others_.look_again();
 }
 
-/// Updates drag state and settings after changes of trace or settings; the annotator passes changes to the scene.
+/// Updates the drag and settings after changes of trace or settings; the annotator passes changes on to the scene.
 void SettingsEditor::show_changes(const Command& command)
 {
     Document& document = *document_;
@@ -124,7 +124,7 @@ void SettingsEditor::show_changes(const Command& command)
     if (!look_the_same(before, document.session)) others_.look_again();
 }
 
-/// Applies the effects of changed settings, except that it does not draw the picture again.
+/// Applies the effects of changed settings, except that the picture is not drawn again.
 void SettingsEditor::settings_changed(const Session& before)
 {
     Document& document = *document_;
@@ -142,7 +142,7 @@ void SettingsEditor::settings_changed(const Session& before)
     }
 }
 
-/// Requests that view, probe etc. are written to the journal: when they come to rest, or every few seconds in motion.
+/// Requests that view, probe etc. are written to the journal: once they stop changing, or every few seconds until then.
 void SettingsEditor::note_to_keep()
 {
     last_change_s_ = options_.now_s();
@@ -201,8 +201,8 @@ void SettingsEditor::step(int count, const char* done, const char* nothing, Way 
     say(steps == 1 ? sentence(done, ": ", last) : sentence(done, ": ", steps, " steps, the last: ", last));
 }
 
-/// Returns whether undo must do nothing, because the last stroke changed nothing and so is no step: undo would revert
-/// an earlier step. True only once after such a stroke; never in scripts, which count steps.
+/// Returns whether undo must do nothing because the last stroke changed nothing and so added no step: undo would revert
+/// an earlier step. Returns true only once after such a stroke, and never in scripts, which count steps.
 bool SettingsEditor::follows_empty_stroke()
 {
     record_settings();

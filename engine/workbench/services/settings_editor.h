@@ -31,9 +31,9 @@ public:
     /// Forgets state of the previous document.
     void begin_document();
     void take_session(Session session);
-    /// Updates drag state and settings after changes of trace or settings; the annotator passes changes to the scene.
+    /// Updates the drag and settings after changes of trace or settings; the annotator passes changes to the scene.
     void show_changes(const Command& command);
-    /// Call this after changing settings of the session that the history records.
+    /// Call this after changing those settings of the session that the history records.
     void note_edit();
     /// Call this after changing the view, the probe or similar settings. They are written to the journal when they come
     /// to rest, and every few seconds while they keep changing.
@@ -43,9 +43,9 @@ public:
     bool has_settings_to_record() const { return settings_to_record_; }
     /// Returns whether the view, the probe or similar settings changed since they were last written to the journal.
     bool has_view_to_keep() const { return to_keep_since_s_.has_value(); }
-    /// Sets whether the user holds a control. Meanwhile, changes make no history step, so that a drag becomes one step.
+    /// Sets whether the user holds a control. Until released, changes make no history step: a drag becomes one step.
     void set_hand_down(bool is_down) { is_hand_down_ = is_down; }
-    /// Notes that a stroke has ended. If it changed nothing (`is_empty`), the next undo does nothing but report that.
+    /// Notes that a stroke has ended. If it changed nothing (`is_empty`), the next undo only reports that.
     void note_stroke(bool is_empty);
     /// Discards unsaved changes without touching files. The journal keeps the changes, so that undo can restore them.
     void discard();
@@ -65,7 +65,7 @@ private:
     bool is_hand_down_ = false;
     bool settings_to_record_ = false, was_set_in_this_turn_ = false;
     std::optional<double> to_keep_since_s_;       ///< time of the oldest view change not in the journal; null: none
-    double last_change_s_ = 0.0;                  ///< time of the last change that the journal should get
+    double last_change_s_ = 0.0;                  ///< time of the last change to be written to the journal
     std::optional<Session> session_before_hand_;  ///< the session before the user began to drag a control
     /// Number of undoable steps after the work was discarded. While the number is the same, nothing is saved.
     std::optional<size_t> discarded_steps_;

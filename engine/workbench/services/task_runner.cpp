@@ -47,7 +47,7 @@ void TaskRunner::advance()
     }
 }
 
-/// Starts a job that writes files. If cancelled, it notes what is left on disk, such as an import that can be resumed.
+/// Starts a job that writes files. If cancelled, the job notes which files are left, such as an unfinished import.
 template <class Work>
 void TaskRunner::start_writing(const std::string& what, Work work)
 {

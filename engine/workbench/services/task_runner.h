@@ -1,6 +1,6 @@
 #pragma once
-// Long work in the background: a job computes its result on a worker thread, and this service uses the result. The job
-// also checks file names and folders, since such checks access the disk.
+// Long work in the background: a job computes a result on a worker thread, and this service then uses it. Jobs also
+// check file names and folders, since such checks access the disk.
 
 #include <map>
 #include <memory>
@@ -36,7 +36,7 @@ public:
     /// Handles jobs that have ended.
     void advance() override;
     bool advances_without_document() const override { return true; }
-    /// Returns whether a job is writing files that the user requested. Quitting and opening other files wait for that.
+    /// Returns whether a job is writing files that the user requested. Quitting and opening other files wait for it.
     bool is_writing() const { return !writers_.empty(); }
     JobModel model() const;
 

@@ -117,7 +117,7 @@ std::optional<uint32_t> Tracer::node_in_voxel(const glm::dvec3& voxel) const
     return nearest_node_of(trace, groups_found_nearby(document_->session), voxel * spacing, 0.5 * glm::length(spacing));
 }
 
-/// Returns the point under a pixel on a centre line, if lines attract tools. The selected node's own lines count, too.
+/// Returns the point under a pixel on a centre line, if tools snap to lines. Lines of the selected node count, too.
 std::optional<ToolPlace> Tracer::line_at(const Pane& seen, const glm::dvec2& pixel) const
 {
     if (!document_->session.probe.touch.to_lines) return std::nullopt;
@@ -136,7 +136,7 @@ std::optional<ToolPlace> Tracer::line_at(const Pane& seen, const glm::dvec2& pix
     return ToolPlace{glm::mix(a, b, share), {}, hit.internode};
 }
 
-/// If part of the trace attracts the tools at `place`, carries out the operation on this part, and returns true.
+/// If the tools snap to part of the trace at `place`, carries out the operation on this part, and returns true.
 bool Tracer::add_drawn_node(const ToolPlace& place)
 {
     const glm::dvec3& spacing = document_->volume().spacing;
@@ -224,7 +224,7 @@ void Tracer::select_segment()
     }
 }
 
-/// Returns whether the volume hides the trace at this pixel; surfaces that show the trace itself do not count.
+/// Returns whether the volume hides the trace at this pixel. Surfaces generated from the trace itself do not hide it.
 bool Tracer::is_hidden(const Pane& seen, const glm::dvec2& pixel, const TraceHit& hit) const
 {
     constexpr double OPAQUE_ENOUGH = 0.9, APART_VOXELS = 2.0;
@@ -287,7 +287,7 @@ void Tracer::act(const DragNode& action)
     if (document_->drags_node) this->trace(document_->drag_move());
 }
 
-/// Adds a node where tools act. If an existing node attracts the tools, links and selects that node instead.
+/// Adds a node where tools act. If they snap to an existing node, links the selected node to it and selects it.
 void Tracer::add_node_here()
 {
     add_node_at(node_or_link_at_probe(desk_.model()));

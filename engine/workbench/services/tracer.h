@@ -1,5 +1,5 @@
 #pragma once
-// Carries out operations on the trace as commands of the history, as scripts do; selects and adds by pointing.
+// Carries out operations on the trace as commands of the history, as scripts do; selects and adds nodes by pointing.
 
 #include "engine/workbench/desk/preference_keeper.h"
 #include "engine/workbench/desk/service.h"
@@ -36,7 +36,7 @@ public:
     void act(const MendCut& action);
 
     void trace(const TraceOp& op);
-    /// Adds a node where tools act. If an existing node attracts the tools, links and selects that node instead.
+    /// Adds a node where tools act. If they snap to an existing node, links the selected node to it and selects it.
     void add_node_here();
     TraceModel model() const;
 

@@ -86,7 +86,7 @@ void Viewer::act(const Zoom& action)
                               document_->probe_voxel()));
 }
 
-/// Sets the slices to show. Like the camera's, their position is saved, but does not count as a change of the work.
+/// Sets which slices to show. Like the camera, their position is saved, but its changes do not count as unsaved work.
 void Viewer::show_slices(SliceSettings slices)
 {
     document_->session.view.slices = slices;
@@ -110,7 +110,7 @@ void Viewer::follow_slices()
     if (next == document.session.view.slices) return;
     const Set following = edited(document.session, [&](Session& s) { s.view.slices = next; });
     show_slices(next);
-    if (log_) log_(line_of(following));  // later log lines with pixels of slices refer to the new position
+    if (log_) log_(line_of(following));  // slice pixels in later log lines refer to this position
 }
 
 void Viewer::follow_look()
@@ -131,7 +131,7 @@ void Viewer::follow_look()
     document.screen.advance();
 }
 
-/// Returns the pane for the current camera and probe; the screen's pane lags if several actions come between frames.
+/// Returns the pane for the current camera and probe; the screen's own pane may be older within a frame.
 Pane Viewer::pane(size_t index) const
 {
     const std::vector<Pane> panes = panes_of(document_->session.view, document_->camera, pixels_,
@@ -311,7 +311,7 @@ void Viewer::act(const FitView& action)
 void Viewer::act(const ResetView&)
 {
     const Session& session = document_->session;
-    // The camera "window" is where an earlier window was closed, so it is no view to return to: use the default view.
+    // The camera "window" stores the view of the last closed window, which is no default view: use the usual one.
     const std::string name = session.camera_name == "window" ? std::string() : session.camera_name;
     look_from(camera_named(session, name, document_->volume()));
     say("The view is reset");

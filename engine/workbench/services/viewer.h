@@ -39,9 +39,9 @@ public:
     /// Draws the whole picture again.
     void look_again() { look_is_stale_ = true; }
     void look_from(const Camera& camera);
-    /// Returns the pane for the current camera and probe; the screen's pane lags after several actions in a frame.
+    /// Returns the pane for the current camera and probe; the screen's own pane may be older within a frame.
     Pane pane(size_t index) const;
-    /// Returns the visible point at a pixel of a pane, in volume space; in a slice, the point of its plane. Null: none.
+    /// Returns the visible point at a pixel of a pane, in volume space; in a slice, the point in its plane. Null: none.
     std::optional<glm::dvec3> seen_at(const Pane& pane, const glm::dvec2& pixel) const;
     /// Like seen_at(), but the point's depth along the view may differ from `depth` by at most `reach`.
     std::optional<glm::dvec3> seen_near(const Pane& pane, const glm::dvec2& pixel, double depth, double reach) const;

@@ -7,7 +7,7 @@ namespace shvr::ui {
 
 namespace {
 
-constexpr uint8_t GROUND = 236;  ///< opacity in linear light, out of 255, that looks as dark on white as in the window
+constexpr uint8_t GROUND = 236;  ///< opacity (of 255, in linear light) that looks as dark on white as in the window
 constexpr glm::dvec3 GROUND_COLOR(0.007);
 
 Stamp ground_of(const Stamp& words, double units)

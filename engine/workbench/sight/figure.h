@@ -17,7 +17,7 @@ struct TextImage {
     glm::ivec2 pixels{0};
     std::vector<uint8_t> coverage;
 };
-/// A function that draws texts into images, with the same height in pixels for all. Main thread only.
+/// A function that draws texts into images, all with the same height in pixels. Main thread only.
 using TextDrawer = std::function<std::vector<TextImage>(std::span<const std::string> texts, double pixels)>;
 
 struct Figure {

@@ -7,7 +7,7 @@
 
 namespace shvr::ui {
 
-/// Maximum motion, in pixels, between press and release for which they count as a click and not as a drag.
+/// Maximum motion between press and release, in pixels, for which they count as a click and not as a drag.
 inline constexpr double CLICK_PIXELS = 4.0;
 /// Returns whether the motion between two events is too long to be a hand's: longer than a quarter of the pane's height
 /// and than 64 pixels. (At 60 events a second, 150 pixels are half a metre a second on most tables.) Causes are a pen

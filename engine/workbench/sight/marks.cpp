@@ -164,7 +164,7 @@ private:
                glm::all(glm::lessThan(glm::min(a, b), glm::dvec2(pixels_)));
     }
 
-    /// Marks the node or the centre line that currently attracts the tools.
+    /// Marks the node or the centre line to which the tools snap now.
     void drawn_tool()
     {
         if (!model_.tool_node && !model_.tool_internode) return;

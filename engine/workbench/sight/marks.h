@@ -17,7 +17,7 @@ inline constexpr double FONT_UNITS = 14.0;
 
 struct Label {
     glm::dvec2 at{0.0};      ///< pixels of the pane
-    glm::dvec2 anchor{0.0};  ///< point of the text that lies at `at`: 0, 0: upper left corner; 1, 1: lower right corner
+    glm::dvec2 anchor{0.0};  ///< point of the text that is placed at `at`; 0, 0: upper left corner; 1, 1: lower right
     std::string text;
     glm::dvec3 color{1.0};  ///< linear light
 };

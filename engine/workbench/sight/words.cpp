@@ -18,7 +18,7 @@ std::string digits(double value)
     return text;
 }
 
-/// Formats an integer with all digits, and any other value with the few digits of `digits`.
+/// Formats an integer with all its digits, and any other value with four digits.
 std::string intensity_in_words(double value)
 {
     constexpr double MAX_EXACT = 9007199254740992.0;  // 2^53
@@ -39,7 +39,7 @@ std::string three(const glm::dvec3& values)
 /// Units of length, each a thousand times as long as the previous one.
 constexpr const char* THOUSANDS[] = {"nm", "um", "mm", "m"};
 
-/// Formats a length in the unit with which the number has the fewest zeros.
+/// Formats a length in the unit for which its number has the fewest zeros.
 std::string readable(double length, std::string unit)
 {
     auto at = std::ranges::find(THOUSANDS, unit);

@@ -30,7 +30,7 @@ void TapLink::begin_tick() noexcept
     Latest<ForceSettings>* const settings = settings_.load(std::memory_order_acquire);
     if (!settings || !orders_.take()) return;
     const TapOrder& order = orders_.value();
-    settings->publish(order.settings.force);  // the servo reads these settings next, on this thread
+    settings->publish(order.settings.force);  // the servo reads these settings after this call, on this thread
     has_new_settings_ = true;
     if (order.recording != recording_) {
         recording_ = order.recording;
@@ -38,7 +38,7 @@ void TapLink::begin_tick() noexcept
     }
 }
 
-/// Stores the tick's time: the first time that the servo requests during the tick.
+/// Stores the tick's time, which is the first time that the servo requests during the tick.
 void TapLink::note_now(uint64_t now_ns) noexcept
 {
     if (!std::exchange(is_new_tick_, false)) return;
@@ -47,7 +47,7 @@ void TapLink::note_now(uint64_t now_ns) noexcept
 
 void TapLink::note_read(ReadResult result, const DeviceState& state) noexcept
 {
-    // Stores the result as the servo sees it: after a failed write, a device is lost until it reports a new state.
+    // Stores the result as the servo sees it: after a failed write, the device is lost until it reports a new state.
     now_.tick.read = !was_written_ && result != ReadResult::fresh ? ReadResult::lost : result;
     now_.tick.state = state;
     if (const Latest<RelevancePatch>* const relevance = relevance_.load(std::memory_order_acquire)) {
@@ -74,7 +74,7 @@ void TapLink::note_write(const glm::dvec3& asked_n, const glm::dvec3& force_n, b
     plot_.heat = most > 0.0 ? heat_.square / most : 0.0;
     add_to_plot(glm::length(force_n));
     if (recording_ != 0) put();
-    has_new_settings_ = recording_ == 0 && has_new_settings_;  // a recording begins with the settings then in force
+    has_new_settings_ = recording_ == 0 && has_new_settings_;  // a recording begins with the settings in force
 }
 
 void TapLink::put() noexcept

@@ -24,7 +24,7 @@ namespace shvr::ui {
 struct PlaneHold {
     bool is_on = false;
     glm::dvec3 normal{0.0, 0.0, 1.0}, point_m{0.0};
-    uint32_t count = 0;  ///< number of planes so far; after a change, a jump of the probe is expected
+    uint32_t count = 0;  ///< number of planes so far; if it changes, the servo expects the probe to jump
     bool operator==(const PlaneHold&) const = default;
 };
 
@@ -56,7 +56,7 @@ struct RecordedTick {
 
 class TapLink {
 public:
-    /// `recording`: number of a recording that begins with the first tick; 0: none.
+    /// `recording`: number of a recording that starts at the first tick; 0: no recording.
     explicit TapLink(uint32_t recording = 0) : ring_(RING), recording_(recording)
     {
         if (recording != 0) relevance_log_.begin();

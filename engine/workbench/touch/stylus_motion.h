@@ -46,15 +46,15 @@ std::optional<double> radius_from_overlap(double share, double ball_radius);
 struct ToolPlace {
     glm::dvec3 point{0.0};              ///< volume space
     std::optional<uint32_t> node;       ///< the node that attracts tools
-    std::optional<uint32_t> internode;  ///< the internode that attracts the tools, at a point between its ends
+    std::optional<uint32_t> internode;  ///< the internode to which the tools snap, if they snap between its ends
 };
-/// Returns the place on the trace, within `reach`, that attracts tools as `feel` selects: the nearest node, or else the
-/// nearest point of a centre line; if there is none, `point`. Parts of the trace in groups that are not in `drawn`
-/// attract nothing, nor do the internodes of `except_of`, the node from which the user continues.
+/// Returns the place, within `reach`, to which tools snap as `feel` selects: the nearest node of the trace, or else the
+/// nearest point of a centre line; if there is none, `point`. Tools never snap to groups that are not in `drawn`, nor
+/// to internodes of `except_of`, the node from which the user continues.
 ToolPlace tool_place(const FeelSettings& feel, const TraceGraph& trace, const glm::dvec3& point, double reach,
                      std::optional<uint32_t> except_of, const std::bitset<256>& drawn = EVERY_GROUP);
 
-/// Returns the groups of the trace that actions at the probe can find: those shown, or all if hidden parts can be felt.
+/// Returns the groups of the trace that actions at the probe can find: those shown, or all if hidden parts are felt.
 std::bitset<256> groups_found_nearby(const Session& session);
 
 }  // namespace shvr::ui

@@ -24,13 +24,13 @@ struct GuideSettings {
 GuideSettings guide_settings(const Session& session, double probe_radius, FeltLimits limits);
 
 struct StylusPoint {
-    glm::dvec3 probe{0.0}, middle{0.0};  ///< physical units; they differ only in contact and if `at_proxy` is on
+    glm::dvec3 probe{0.0}, middle{0.0};  ///< in physical units; they differ only in contact, and only with `at_proxy`
     bool in_contact = false;
     double relevant_share = 0.0;
     bool is_pressed = false;  ///< state of the first button
 };
 /// Returns the probe's path. `by_hand`: the recording pulls a simulated hand and stylus; if false, the probe follows
-/// the recording. `source` must include offsets. Recordings of older versions feel hidden voxels, as they did then.
+/// the recording. `source` must include offsets. In recordings of older versions, hidden voxels are felt, as then.
 std::vector<StylusPoint> play_stylus(const Trace& trace, const GuideSettings& guide, bool by_hand,
                                      std::shared_ptr<const VolumeSource> source, const Mask& mask);
 

@@ -43,7 +43,7 @@ void StylusRecorder::swap_device()
     relevance_ = 0;
 }
 
-/// Adds the relevance in use. Also adds entries that the servo skipped, since later entries refer to them.
+/// Adds the relevance in use, and also entries before it that the servo skipped, since later entries refer to them.
 void StylusRecorder::add_relevance(RelevanceLog& log)
 {
     if (tick_.relevance == relevance_) return;
@@ -67,7 +67,7 @@ void StylusRecorder::add_caps()
 
 Trace StylusRecorder::take()
 {
-    const size_t ticks = trace_.ticks.size();  // drops swaps and settings of devices that answered in no tick
+    const size_t ticks = trace_.ticks.size();  // drops swaps and settings of devices that had no tick
     std::erase_if(trace_.swaps, [&](size_t from) { return from >= ticks; });
     std::erase_if(trace_.settings, [&](const TraceSettings& settings) { return settings.from_tick >= ticks; });
     if (trace_.ticks.empty()) fail("the recording is empty; expected a device that moves the probe");

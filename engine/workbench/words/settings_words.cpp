@@ -47,7 +47,7 @@ std::string sentence_about_solo(const Session& session)
                       : sentence("Only group ", int(*solo), " is drawn: ", group_of(session.groups, *solo).name);
 }
 
-/// Returns the distance by which all points were shifted, if nothing else was changed; otherwise null.
+/// Returns the distance by which all points were shifted; null if anything else was changed.
 std::optional<double> shift_between(const TransferFunction& was, const TransferFunction& is)
 {
     const auto before = was.points(), after = is.points();
@@ -86,7 +86,7 @@ std::string sentence_about(const OcclusionSettings& was, const OcclusionSettings
                     " of the light arrives, ", percent(moved->seen), " is seen", off);
 }
 
-/// Describes a change of the settings of touch. Returns an empty text if only numbers changed: they need no words.
+/// Describes a change of the settings of touch. Returns an empty text if only numbers changed, which need no words.
 std::string sentence_about(const FeelSettings& was, const FeelSettings& is)
 {
     if (was.mode != is.mode) return words_of(is.mode).sentence;

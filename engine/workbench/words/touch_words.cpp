@@ -7,7 +7,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// Whether VALUE is an enumerator: the compiler prints a value without an enumerator as a cast, "(Type)3".
+/// Whether VALUE is a named enumerator: the compiler's name for a value without one is a cast, "(Type)3".
 template <auto VALUE>
 consteval bool is_named()
 {

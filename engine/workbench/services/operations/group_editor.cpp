@@ -9,7 +9,7 @@
 
 namespace shvr::ui {
 
-/// A copy of the data that a job reads, made when the action arrived, so that later changes do not matter.
+/// A copy of the data that a job reads, made when the action arrives, so that later changes do not affect the job.
 struct GroupEditor::Snapshot {
     Mask mask;
     TraceGraph trace;

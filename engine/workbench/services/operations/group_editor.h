@@ -20,7 +20,7 @@ public:
     template <class Operation>
     requires IS_GROUP_OPERATION<Operation>
     void act(const Operation& operation) { begin(GroupOperation(operation)); }
-    /// Waits for the operation that began last. Fails with the reason if its result did not become a step. An exception
+    /// Waits for the operation started last. Fails with the reason if its result did not become a step. An exception
     /// from `progress` cancels the operation.
     const OperationResult& finish(const Progress& progress);
 
