@@ -8,7 +8,7 @@ namespace shvr {
 
 namespace {
 
-/// Returns an environment variable that holds an absolute path; empty otherwise: XDG says to ignore relative paths.
+/// Returns an environment variable if it holds an absolute path, else an empty path: XDG says to ignore relative ones.
 std::filesystem::path folder_from(const char* variable)
 {
     const char* const value = std::getenv(variable);

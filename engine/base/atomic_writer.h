@@ -33,7 +33,7 @@ std::optional<int64_t> multiplied(int64_t a, int64_t b);
 /// nothing if the file system does not state its free space. `remedy` ends the message: "free some of it".
 void expect_space(const std::filesystem::path& path, std::optional<int64_t> bytes, const char* remedy);
 
-/// Removes the temporary files of all writers that have not committed. For signal handlers: calls only
+/// Removes the temporary files of all writers that have not committed. Meant for signal handlers: calls only
 /// async-signal-safe functions. The program must terminate afterwards.
 void remove_temporary_files();
 

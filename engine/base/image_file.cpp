@@ -56,7 +56,7 @@ std::optional<int64_t> bits_of_pixel(Bytes file)
 
 void check_size(int64_t width, int64_t height, std::string_view name)
 {
-    // Divides instead of multiplying, since the product of sizes in a malicious file could overflow.
+    // Divides by the height instead of multiplying, since the product of the sizes in a malicious file could overflow.
     if (width < 1 || height < 1 || width > MAX_IMAGE_PIXELS / height) {
         fail(name, ": the picture is ", width, " x ", height, " pixels; expected 1 to ", MAX_IMAGE_PIXELS, " of them");
     }

@@ -55,8 +55,8 @@ std::string reason_of(const json::exception& error)
 }
 
 /// Checks a text. Refuses invalid JSON, and two things that the parser accepts: deep nesting, and repeated keys (the
-/// parser silently keeps the last one). Runs as a separate pass because a parser with a callback searches a whole array
-/// at the end of each of its elements.
+/// parser silently keeps the last one). This is a separate pass, because a parser with a callback searches a whole
+/// array at the end of each of the array's elements.
 class Strictness : public nlohmann::json_sax<json> {
 public:
     Strictness(const std::string& origin, const JsonLimits& limits) : origin_(&origin), limits_(limits) {}

@@ -55,7 +55,7 @@ void WorkPool::wait(const std::shared_ptr<Batch>& batch)
     const auto is_finished = [&] { return batch->is_finished(); };
     for (;;) {
         if (!poll_) finished_.wait(lock, is_finished);
-        // Measures the time since the last poll in any batch, so that a series of short batches is polled, too.
+        // Measures the time since the last poll of any batch, so that a series of short batches is polled, too.
         const bool is_due = poll_ && std::chrono::steady_clock::now() >= polled_ + POLL_INTERVAL;
         if (!is_due && finished_.wait_until(lock, polled_ + POLL_INTERVAL, is_finished)) break;
         lock.unlock();

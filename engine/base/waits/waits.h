@@ -7,7 +7,7 @@
 
 namespace shvr {
 
-/// While this object exists, waits of this thread end once `is_over` returns true. If objects nest, any of them can.
+/// While this object exists, waits of this thread end once `is_over` returns true. Of nested objects, any can end them.
 class WaitsUntil {
 public:
     explicit WaitsUntil(std::function<bool()> is_over);
