@@ -16,15 +16,15 @@ namespace shvr {
 namespace {
 
 /// Chooses sizes of thread groups and tiles. Tiles bound the time of one submission on a slow device. GPUs get square
-/// tiles, so that rays in a tile are similar. A CPU has rows of bricks in its caches, and waits for its slowest thread
-/// after each tile. With powers of two, the number of dispatches does not depend on the number of threads.
+/// tiles, so that rays in a tile are similar. CPU tiles are larger: they use caches better, and each ends with a wait
+/// for the slowest thread. With powers of two, the number of dispatches does not depend on the number of threads.
 PixelGroups pixel_groups_of(const gpu::DeviceTraits& traits)
 {
     if (!traits.is_cpu) return {.width = 8, .layers = 1, .tile = {128, 128}};
     return {.width = 16, .layers = std::min(std::bit_ceil(traits.cpu_threads), 64u), .tile = {256, 256}};
 }
 
-/// Opacity of previewed voxels behind other things, and of previewed voxels in slices.
+/// Opacity of previewed voxels that other objects hide, and opacity of previewed voxels in slices.
 constexpr float PREVIEW_SHARE = 0.55f, PREVIEW_SLICE_SHARE = 0.7f;
 
 RaycastOcclusion raycast_occlusion(Resource values, const OcclusionSettings& settings)
@@ -62,7 +62,7 @@ struct Prepared {
     std::optional<SurfaceList> listed;
 };
 
-/// Adds the passes of the first rows of the list at the top of frame.h: volume, occlusion and tables.
+/// Adds the passes that frame.h lists first: volume, occlusion and tables.
 Prepared prepare(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, const PicturePart& part,
                  bool feedback, bool rays_wait = false)
 {

@@ -40,7 +40,7 @@ struct PicturePart {
     std::optional<VoxelBox> always_shown{};
 };
 
-/// Per-pixel state of rays that wait for bricks, kept from one graph to the next (engine/passes/raycast.h,
+/// State of each pixel's ray that waits for bricks, kept from one graph to the next (engine/passes/raycast.h,
 /// RaysInWaiting).
 class WaitingRays {
 public:
@@ -66,9 +66,9 @@ struct Drawn {
     DeviceVolume::Feedback feedback;
 };
 /// Adds the passes that draw a part of a shot into `target`, an rgba32_float picture: linear light, premultiplied, over
-/// the background. The graph must be submitted before any graph made later. `waiting`: rays continue from the missing
-/// bricks at which the previous graph left them; this requires the same part, and a volume that lets rays wait. If
-/// `waiting` is null, the volume is switched to rays that do not wait.
+/// the background. The graph must be submitted before any graph made later. `waiting`: rays continue at the missing
+/// bricks at which they stopped in the previous graph; this requires the same part, and a volume that lets rays wait.
+/// If `waiting` is null, the volume is switched to rays that do not wait.
 Drawn draw(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, const PicturePart& part,
            Resource target, bool count_work = false, WaitingRays* waiting = nullptr);
 /// Returns a graph of the preparation that all parts of a shot share, whatever their size: tables, directory, surfaces.
@@ -78,7 +78,7 @@ FrameGraph prepared(Scene& scene, const Look& look, const Shot& shot, const Pict
 /// 0 if no point is visible.
 Resource pick(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, const PicturePart& part);
 
-/// Number of drawn rays that stopped early, before their end and before anything opaque. Their pixels are wrong.
+/// Number of drawn rays that stopped too early: before their end, and not at anything opaque. Their pixels are wrong.
 uint64_t rays_cut_short(const std::vector<gpu::PassReport>& passes);
 /// Returns the sentence that warns the user about rays that stopped early.
 std::string cut_short_sentence(uint64_t rays, const Look& look);

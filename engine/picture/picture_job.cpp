@@ -139,7 +139,7 @@ void PictureJob::begin_band()
     band_begin_ = band_end_;
     band_end_ = std::min(band_begin_ + band_rows_, size_.y);
     const size_t values = size_t(size_.x) * (band_end_ - band_begin_) * 4;
-    // Counts two bands, since the receiver may still hold the previous one, and the copy of one part's pixels.
+    // Counts two bands, since the receiver may still hold the previous band, and the copy of one part's pixels.
     constexpr uint64_t BANDS = 2;
     renderer_.note_picture_bytes(BANDS * values * sizeof(float) +
                                  PIXEL_BYTES * options_.part_pixels * std::min(options_.part_pixels, band_rows_));
@@ -149,7 +149,7 @@ void PictureJob::begin_band()
     if (parts_.empty()) end_band();  // when no pane covers these rows
 }
 
-/// Lists the parts in which the current pane meets the band; if it does not, those of the next pane that does.
+/// Lists the parts of the band in the current pane or, if they do not overlap, in the next pane that overlaps the band.
 void PictureJob::begin_parts()
 {
     for (; pane_ < panes_.size(); ++pane_) {
@@ -202,7 +202,7 @@ void PictureJob::end_band()
     renderer_.note_picture_bytes(0);
 }
 
-/// Loads the requested bricks. If `waits` is false, returns false while some of them are still being read.
+/// Loads the requested bricks. If `waits` is false, returns false while some of these bricks are still being read.
 bool PictureJob::load(const Progress& progress, bool waits)
 {
     scene().advance(waits, progress);
@@ -235,7 +235,7 @@ bool PictureJob::renew_occlusion(const Progress& progress, bool waits)
     return true;
 }
 
-/// Returns the progress of a part in its nth round. The number of rounds is unknown: each takes half of the remainder.
+/// Returns the progress of a part in its nth round. The number of rounds is unknown: each counts half of the remainder.
 Progress PictureJob::progress_of(const PicturePart& part, int round)
 {
     if (!options_.progress) return {};
@@ -310,7 +310,7 @@ std::vector<gpu::PassReport> PictureJob::take(UnderWay part)
     const size_t row_bytes = size_t(size.x) * 4 * sizeof(float);
     for (uint32_t y = 0; y < size.y; ++y, row += row_bytes)
         std::memcpy(&band_.rgba[4 * (origin.x + size_t(size_.x) * (origin.y - band_begin_ + y))], row, row_bytes);
-    // While two parts are in flight, their drawing times overlap; the overlap counts only once.
+    // If two parts are in flight, their drawing times overlap; the overlapping time counts only once.
     const double now_ms =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
     picture_.wall_ms += std::min(result.wall_ms, now_ms - last_taken_ms_.value_or(-HUGE_VAL));
@@ -323,8 +323,8 @@ std::vector<gpu::PassReport> PictureJob::draw(const PicturePart& part, WaitingRa
     return take(begin(part, waiting));
 }
 
-/// Draws a part that one drawing completes, and copies the previous part's pixels while the device draws this one.
-/// Waits for the picture's very first part, whose time determines how the others are divided.
+/// Draws a part that is complete after one drawing, and copies the previous part's pixels while the device draws this
+/// part. Waits for the picture's very first part, whose time determines how the other parts are divided.
 void PictureJob::draw_ahead(const PicturePart& part)
 {
     look_at(scene(), look_, pane().shot, part);
@@ -388,7 +388,7 @@ bool PictureJob::draw_rounds(bool waits)
             rounds_->is_drawn = true;
         }
         if (!load(progress, waits)) return false;
-        // Revisited bricks may have been lit when there were no slots for the bricks around them: load these now.
+        // Visited bricks may have been lit without their neighbours, for lack of slots: load the neighbours now.
         if (!load_around(progress, waits)) return false;
         rounds_->is_drawn = false;
         if (volume.state() == State::limited) return true;

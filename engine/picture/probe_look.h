@@ -28,7 +28,7 @@ struct ProbeLook {
     std::optional<ShellLook> shell;
     std::shared_ptr<const PaintPreview>
         preview;  ///< voxels that the probe's brush would change, also shown in slices; null: not shown
-    bool has_silhouette = true, has_arrow = true;  ///< allows the outline and the arrow, if pictures have them
+    bool has_silhouette = true, has_arrow = true;  ///< whether outline and arrow may be drawn (RenderOptions)
     bool operator==(const ProbeLook&) const = default;
     /// Returns the radius of a ball that encloses all drawn parts. `spacing`: the volume's.
     double reach(const glm::dvec3& spacing) const;

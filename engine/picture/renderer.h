@@ -15,7 +15,7 @@
 
 namespace shvr {
 
-/// Any call of Renderer may throw DeviceLost; only restart() helps then.
+/// Any call of Renderer may throw DeviceLost; afterwards, only restart() may be called.
 using gpu::DeviceLost;
 
 struct RenderOptions {
