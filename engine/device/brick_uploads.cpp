@@ -19,7 +19,7 @@ BrickUploads::BrickUploads(gpu::Executor& executor, gpu::Memory& memory, uint64_
 
 namespace {
 
-/// `Code`: uint16_t; uint8_t where all codes are multiples of 257 (8-bit volumes).
+/// `Code`: uint16_t, or uint8_t if all codes are multiples of 257 (8-bit volumes).
 template <class Code>
 void write_codes(const BrickTexels& texels, const glm::ivec3& begin, const glm::ivec3& end, std::byte* to)
 {

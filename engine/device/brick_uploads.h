@@ -49,7 +49,7 @@ private:
     /// Byte offsets of a brick's codes and ranges in the staging buffer of a batch.
     uint64_t codes_at(uint64_t brick) const
     {
-        return brick * slot_code_bytes(codes_);  // no destination takes more codes than a slot
+        return brick * slot_code_bytes(codes_);  // no copy takes more codes than a slot has
     }
     uint64_t ranges_at(uint64_t brick) const { return codes_at(batch_) + brick * BrickTexels::RANGE_BYTES; }
     glm::uvec3 extent_of(uint32_t brick) const { return {targets_[brick].end - targets_[brick].begin}; }

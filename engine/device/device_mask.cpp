@@ -20,7 +20,7 @@ constexpr uint64_t MASK_BRICK_BYTES = uint64_t{gpu::BRICK_SIZE} * gpu::BRICK_SIZ
 
 uint64_t DeviceMask::bytes_for(uint64_t painted_bricks)
 {
-    // Counts the unused slot, partly filled rows of the atlas, and the table with three numbers per entry.
+    // Includes the slot that is never used, partly filled rows of the atlas, and the hash table, 3 numbers per entry.
     constexpr uint64_t ROW = 16;
     const uint64_t bricks = painted_bricks + painted_bricks / MASK_SPARE_SHARE + MASK_FEWEST_BRICKS + ROW;
     return bricks * MASK_BRICK_BYTES + 4 * std::bit_ceil(2 * painted_bricks + 16) * gpu::MASK_ENTRY;

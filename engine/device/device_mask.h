@@ -14,7 +14,7 @@ namespace shvr {
 
 class DeviceMask {
 public:
-    /// `hashed`: whether the table on the device lists painted bricks only (shaders/library/mask.glsl).
+    /// `hashed`: whether the device has a hash table of the painted bricks only (shaders/library/mask.glsl).
     DeviceMask(gpu::Executor& executor, gpu::Memory& memory, bool hashed)
         : executor_(executor), memory_(memory), hashed_(hashed)
     {}

@@ -39,7 +39,7 @@ std::optional<StackedLayout> stacked_layout(uint64_t slots, AtlasCodes codes, co
 /// The packed address of slot `index`. Indices increase along x first.
 uint32_t slot_at(uint32_t index, const glm::uvec3& slots);
 
-/// The bricks of `level`, each once, whose texels (with aprons) depend on the level 0 voxels in `boxes`.
+/// The bricks of `level`, without duplicates, whose texels (with aprons) depend on the level 0 voxels in `boxes`.
 std::vector<BrickKey> bricks_that_see(std::span<const VoxelBox> boxes, const Size3& size, int level);
 
 /// The bricks of level 0 that overlap a box of voxels; their slots are not filled in.

@@ -125,7 +125,7 @@ OcclusionBinding Occlusion::bring_up_to_date(FrameGraph& graph)
     return binding;
 }
 
-/// Applies `set` to the entries of those `keys` that still have one.
+/// Applies `set` to the entries of `keys`, except for keys without an entry.
 template <class Set>
 void Occlusion::mark(const std::vector<BrickKey>& keys, const Set& set)
 {
@@ -167,7 +167,7 @@ void Occlusion::mark_all(bool cells)
     }
 }
 
-/// Marks the space between the old and new cutting planes.
+/// Marks bricks between the old and new cutting planes as stale.
 void Occlusion::mark_cut(const CutBox& before, const CutBox& after)
 {
     const Size3 size = volume_->info().size;
@@ -189,7 +189,7 @@ void Occlusion::changed(const VoxelBox& changed, int64_t apron)
     if (!look_) return;
     ++changes_;
     for (auto& [key, entry] : entries_) {
-        // A coarse voxel takes the paint at its centre, which may lie in the next finer brick.
+        // A coarse voxel has the paint of the level 0 voxel at its centre, which may belong to a neighbouring brick.
         const VoxelBox brick = voxels_of(key, volume_->info().size);
         const VoxelBox voxels{changed.lower - (apron << key.level), changed.upper + (apron << key.level)};
         entry.needs_cells = entry.needs_cells || meet(brick, voxels);
@@ -264,7 +264,7 @@ bool Occlusion::shows(const BrickKey& key, const Entry& entry) const
     return look_->visibility.shows(entry.range.minimum, entry.range.maximum) || is_painted(key, 0);
 }
 
-/// Whether each brick that the values of `key` depend on is on the device or will never be there.
+/// Whether each brick that the values of `key` depend on is on the device, or never will be.
 bool Occlusion::has_all_around(const BrickKey& key) const
 {
     const glm::ivec3 counts = brick_counts(size_of_level(volume_->info().size, key.level));
@@ -307,7 +307,7 @@ bool Occlusion::is_seen(const BrickKey& key, Entry& entry)
     return *entry.is_seen;
 }
 
-/// Whether the brick is seen. An empty brick is seen if it lies next to paint or to the visible end of a step.
+/// Whether the brick is seen. With pre-integration, an empty brick is seen if any neighbour shows something.
 bool Occlusion::look_whether_seen(const BrickKey& key, const Entry& entry) const
 {
     if (look_->visibility.shows(entry.range.minimum, entry.range.maximum) || is_painted(key, 1)) return true;
@@ -498,7 +498,7 @@ void Occlusion::add_values(FrameGraph& graph, const VolumeBinding& volume, Occlu
     input.params.table_entries = look_->visibility.params.table_entries;
     input.params.guard = look_->visibility.params.guard;
     input.params.rays = look_->rays;
-    // Radii below a voxel have no near taps, but the tables still need a value for the stretch.
+    // If the radius is below a voxel, there are no near taps, but the tables still need a stretch.
     const double near_stretch = input.taps.taps.empty() ? 1.0 : input.taps.near_stretch;
     input.near = cells_input(level, std::ldexp(near_stretch, level), mask);
     input.params.inverse_spacing = std::min({spacing.x, spacing.y, spacing.z}) / spacing;

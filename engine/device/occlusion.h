@@ -39,7 +39,7 @@ public:
         uint32_t rays = 32;
         bool full_sphere = false;
         double gradient_fade = 0.0;  ///< codes per voxel
-        bool preintegrated = false;  ///< a step may show the opacity at its ends, half a step from the lit position
+        bool preintegrated = false;  ///< if true, a ray step may show opacity up to half a step from the lit position
     };
 
     /// Frees all memory.
@@ -56,7 +56,7 @@ public:
 
     bool exists_for(const DeviceVolume& volume) const { return volume_ == &volume; }
     bool has_memory() const { return bool(values_); }
-    /// For each level: the maximum distance, in bricks, from which light can reach a brick.
+    /// For each level: the maximum distance, in bricks, between a brick and the bricks that cast light on it.
     std::vector<int> reach() const;
     /// Whether anything is stale.
     bool is_due();
@@ -142,7 +142,7 @@ private:
         BrickKey key;
     };
     uint64_t changes_ = 1;            ///< incremented when entries may become due
-    Cause nothing_due_{}, queued_{};  ///< inputs when nothing was due, and inputs when the queue was filled
+    Cause nothing_due_{}, queued_{};  ///< inputs at which nothing was due, and inputs at which the queue was filled
     glm::dvec3 queued_eye_{0.0};
     std::vector<Candidate> queue_;  ///< nearest due bricks, all of one level, sorted from far to near
 };

@@ -36,7 +36,7 @@ struct BrickEvent {
         read,     ///< the brick was read; `number` is its range, encoded as in KnownBricks
         unread,   ///< the brick's voxels have changed, so its range is unknown
         painted,  ///< the brick's paint changed; `number` is its count of painted level 0 bricks
-        other,    ///< another property of this brick changed; details are kept elsewhere
+        other,    ///< another property of this brick changed; the event does not say which
     };
     BrickKey key;
     Kind kind = Kind::other;
@@ -71,7 +71,7 @@ public:
 
     /// Whether paint may be visible in a brick, including paint of neighbouring bricks.
     bool is_painted(const PageSight& sight, const BrickKey& key) const;
-    /// Whether a brick, or any finer brick below it, may show something according to the file's densities.
+    /// Whether the file's densities in a brick, or in any finer brick below it, may be visible.
     bool may_show(const PageSight& sight, const BrickKey& key) const;
     /// Whether the brick has been read and shows nothing.
     bool is_empty(const PageSight& sight, const BrickKey& key) const;
@@ -107,11 +107,11 @@ public:
     PageLister(const PageLister&) = delete;
 
     void note(const BrickEvent& change);
-    /// changes(): number of changes so far. changes_since(): the ones after the first `changes`; null if dropped.
+    /// changes(): number of changes so far. changes_since(): all but the first `changes`; null if they were dropped.
     uint64_t changes() const { return first_ + log_.size(); }
     std::optional<std::span<const BrickEvent>> changes_since(uint64_t changes) const;
 
-    /// Whether take() would return without waiting. If not, starts making the list unless another list is being made.
+    /// Whether take() would return without waiting. If not, starts making the list, unless another is being made.
     bool get_ready(const PageView& view, const Visibility& visibility);
     /// Waits for the list and returns it. Fails if the source failed while the list was made.
     std::shared_ptr<PageList> take(const PageView& view, const Visibility& visibility);

@@ -161,7 +161,7 @@ int PagedVolume::look(const PageView& exact, const Visibility& visibility)
     return finest_level();
 }
 
-/// Makes a list the current one. Returns the previous list, with all changes applied to it, to the cache.
+/// Makes a list the current one. Brings the previous list up to date, and puts it back into the cache.
 void PagedVolume::install(std::shared_ptr<PageList> list)
 {
     const std::shared_ptr<PageList> before = std::exchange(list_, std::move(list));

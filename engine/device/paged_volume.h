@@ -132,7 +132,7 @@ private:
     void fill_leaf(uint32_t leaf);
     void fill_directory();
     void note(const BrickEvent& change);
-    /// Notes any other change of a brick that affects what is drawn for this brick.
+    /// Notes a change that has no BrickEvent kind of its own but affects how this brick is drawn.
     void note_changed(const BrickKey& key) { note({.key = key}); }
     void note_all_changed();
     gpu::BrickLeapJob job_of(const BrickKey& key, uint32_t slot) const;
@@ -154,8 +154,8 @@ private:
 
     // Indexed by leaf.
     std::vector<bool> is_reached_;  ///< leaves visited by rays since the view last changed
-    /// Leaves visited earlier. They count as visited while the slots hold their bricks and those of the leaves visited
-    /// now. Without this limit, bricks that are no longer visible would be kept when the camera turns.
+    /// Leaves visited in earlier views. They count as visited while the slots hold their bricks and those of the leaves
+    /// visited now. Without this limit, bricks that are no longer visible would be kept when the camera turns.
     std::vector<bool> was_reached_;
     std::vector<uint32_t> visited_;  ///< leaves in either set
     std::set<uint32_t> awaited_;     ///< includes all visited leaves whose bricks are missing; nearest first
@@ -172,7 +172,7 @@ private:
     uint64_t leaves_looked_up_ = 0, directory_bytes_ = 0;
     bool wants_are_stale_ = true;
     bool is_limited_ = false;
-    size_t pending_ = 0;                                 ///< visited leaves whose bricks are requested and may arrive
+    size_t pending_ = 0;                                 ///< visited leaves whose bricks are requested and can arrive
     std::unordered_set<BrickKey, BrickKeyHash> region_;  ///< bricks of the last region
     std::unordered_set<BrickKey, BrickKeyHash> around_;  ///< bricks requested by want_around()
     std::vector<int> around_reach_;

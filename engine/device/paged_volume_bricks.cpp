@@ -1,4 +1,4 @@
-// Paged bricks (paged_volume.h): which are requested, which are needed, and access to level 0 for other work.
+// Paged bricks (paged_volume.h): which bricks are requested, which are needed, and other work's access to level 0.
 
 #include <algorithm>
 #include <utility>
@@ -200,7 +200,7 @@ void PagedVolume::rebuild_tree()
 /// Adds the bricks that the picture lacks, nearest first. Returns false if the slots cannot hold all of them.
 bool PagedVolume::list_wants(std::vector<BrickKey>& keys)
 {
-    // The sum includes bricks already on the device or arriving. Overestimating does no harm if all of them fit.
+    // Some bricks in this sum need no slot, being on the device or arriving. If even the sum fits, all bricks fit.
     const bool is_roomy = keys.size() + awaited_.size() + around_.size() <= slots_.free_count();
     size_t room = is_roomy ? slots_.free_count() : slots_.room();
     room -= std::min(room, keys.size());
@@ -350,8 +350,8 @@ std::optional<RegionBricks> PagedVolume::region(const VoxelBox& voxels, bool wai
 }
 
 /// Records that a brick of any level has gained or lost paint of a level 0 brick below it. Updates the view's entries
-/// for the brick and for the neighbours that its paint reaches. If `asks`, returns whether the view now needs other
-/// bricks; otherwise returns false.
+/// for the brick and for the neighbours that its paint reaches. With `asks`, returns whether the view now needs other
+/// bricks; without `asks`, returns false.
 bool PagedVolume::note_painted_in(const BrickKey& key, bool is, bool asks)
 {
     std::vector<BrickKey> reached;
@@ -369,7 +369,7 @@ bool PagedVolume::note_painted_in(const BrickKey& key, bool is, bool asks)
         needs_others = needs_others || (asks && known_.may_show(sight(), reached[i]) != were_shown[i]);
         if (i > 0) note_changed(reached[i]);
         const std::optional<uint32_t> leaf = leaf_of(reached[i]);
-        if (leaf && is_visited(*leaf)) awaited_.insert(*leaf);  // a brick that used to be empty may now be missing
+        if (leaf && is_visited(*leaf)) awaited_.insert(*leaf);  // a brick that was empty before may now be missing
     }
     return needs_others;
 }

@@ -336,7 +336,7 @@ void ResidentVolume::renew(std::span<const VoxelBox> changed)
 {
     renew_bricks(bricks_that_see(changed, info().size, 0));
     for (const VoxelBox& box : changed) {
-        // A cell's range covers its voxels and one voxel around; cells beyond the volume's end use its last voxels.
+        // A cell's range covers its voxels and one voxel around them; cells beyond the volume's end use its last ones.
         const Size3 lower = glm::max(box.lower - int64_t{gpu::BRICK_APRON}, Size3(0)) / int64_t{gpu::CELL_SIZE};
         Size3 upper = (box.upper + int64_t{gpu::BRICK_APRON} - int64_t{1}) / int64_t{gpu::CELL_SIZE} + int64_t{1};
         for (int axis = 0; axis < 3; ++axis)

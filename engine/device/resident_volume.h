@@ -1,7 +1,7 @@
 #pragma once
 // A volume with all of its bricks on the device, side by side in one image, together with the value range of every cell
-// and the leap grid, which is updated when visibility or paint changes. Bricks have slots for their ambient light, as
-// paged bricks do. A volume that does not fit the device budget is refused with a message before any brick is read.
+// and the leap grid, which is updated when visibility or paint changes. Bricks have slot numbers, as ambient light is
+// stored by slot. A volume that does not fit the device budget is refused with a message before any brick is read.
 //
 // Used only by the thread that owns the executor.
 
@@ -45,7 +45,7 @@ public:
                           bool feedback) override;
     bool is_stale() const override { return false; }
 
-    // Needs no feedback: all bricks are on the device, so visits do not matter.
+    // Feedback about visited bricks is not needed, since all bricks are on the device.
     Feedback request_feedback(FrameGraph&, const VolumeBinding&) const override { return {}; }
     void take_feedback(const Feedback&, const gpu::FrameResult&) override {}
     void forget_visits() override {}

@@ -28,14 +28,14 @@ constexpr uint64_t PAGED_FIFTHS_WITH_OCCLUSION = 2;
 /// Limit of the atlas on a CPU device, whose memory is shared with files and programs. 27 000 bricks fit, more than a
 /// view needs on a common screen.
 constexpr uint64_t MAX_ATLAS_BYTES_OF_CPU = uint64_t{2} << 30;
-/// Of this many shares of the host's budget, paged bricks get one, coarser levels one, and mapped memory two.
+/// Number of shares of the host's budget: one is for paged bricks, one for coarser levels, and two for mapped memory.
 constexpr uint64_t HOST_SHARES = 4;
-/// A view of up to this many bricks can show the finest level everywhere: the maximum of its leaves (page_tree.h).
+/// A view of up to this many bricks can show the finest level everywhere: the maximum number of leaves (page_tree.h).
 constexpr int64_t MAX_FINEST_BRICKS = int64_t{1} << 17;
 
 /// Distance in voxels up to which an offset affects the picture through interpolation and gradients.
 constexpr int64_t RAISED_REACH = 2;
-/// Maximum number of boxes stored if nothing collects them. Beyond it, boxes are merged into one per cause.
+/// Maximum number of boxes stored until take_changed() is called. Further boxes are merged into one per cause.
 constexpr size_t MAX_CHANGED = 4096;
 
 bool filters(const gpu::DeviceTraits& traits, Sampling sampling)
@@ -112,7 +112,7 @@ uint64_t atlas_bytes(const gpu::Memory& memory, const VolumeInfo& info, AtlasCod
     const uint64_t room = left - std::min(left, beside);
     // Layouts of images round up.
     const uint64_t fewest = std::min(PagedVolume::MIN_SLOTS + 8, uint64_t(2 * finest_bricks(info) + 1)) * with_light;
-    const uint64_t rest = budget - left + reserved_bytes + fewest;  // over half of the budget that the message states
+    const uint64_t rest = budget - left + reserved_bytes + fewest;  // more than half of the budget in the message
     if (room < fewest)
         throw gpu::BudgetError(
             sentence(info.name, ": a picture needs ", gpu::mebibytes(beside + fewest), " of device memory",
@@ -149,7 +149,7 @@ Scene::Scene(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const
       tables_(memory)
 {
     load(options_.reserved_bytes);
-    options_.in_slices = false;  // if memory runs short, the volume is loaded again without slices
+    options_.in_slices = false;  // if memory runs short, the volume is loaded again, at once
 }
 
 /// `reserved_bytes`: device memory for paint, offsets and surfaces.
@@ -250,7 +250,7 @@ AtlasCodes Scene::codes_for(const gpu::DeviceTraits& traits, VoxelType type, Sam
     return type == VoxelType::uint8 || type == VoxelType::int8 ? AtlasCodes::exact8 : AtlasCodes::exact16;
 }
 
-/// The atlas may use several images; with ambient light only one, since one image of half the size holds the light.
+/// The atlas may use several images, but with ambient light only one: an image of half the size must hold the light.
 uint64_t Scene::most_atlas_bytes(const gpu::DeviceTraits& traits, AtlasCodes codes, bool with_occlusion)
 {
     const uint64_t of_image = std::min(traits.max_volume_bytes / slot_code_bytes(codes),

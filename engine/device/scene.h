@@ -35,7 +35,7 @@ public:
         int threads = 1;  ///< workers that build bricks
         uint64_t host_bytes =
             0;                   ///< a quarter is for paged bricks, a quarter for coarser levels if the source has none
-        Progress progress{};     ///< progress of loading, also when show() loads the volume again
+        Progress progress{};     ///< progress of loading, also if show() has to load the volume again
         bool in_slices = false;  ///< the constructor only starts loading; until it is done, only load_on() may be
                                  ///< called
         uint64_t reserved_bytes = 0;  ///< device memory kept free for content shown in addition to the volume
@@ -59,12 +59,12 @@ public:
     static AtlasCodes codes_for(const gpu::DeviceTraits& traits, VoxelType type, Sampling sampling);
     /// Whether one image of the device could hold all bricks of the source, regardless of free memory.
     static bool can_be_resident(const gpu::Memory& memory, const VolumeSource& source, const Options& options);
-    /// Whether such a scene would be paged even if the device held nothing else.
+    /// Whether a scene of this source would be paged even if the device held nothing else.
     static bool pages_alone(const gpu::Memory& memory, const VolumeSource& source, const Options& options);
-    /// Whether such a scene would be resident and fits in addition to everything now on the device. Fails if the device
-    /// does not support `options`.
+    /// Whether a scene of this source would be resident and fits in addition to everything now on the device. Fails if
+    /// the device does not support `options`.
     static bool fits_now(gpu::Memory& memory, const VolumeSource& source, const Options& options);
-    /// Fails if the sizes alone show that such a scene is impossible; reads no voxels.
+    /// Fails if the sizes alone show that a scene of this source is impossible; reads no voxels.
     static void check_sizes(gpu::Memory& memory, const VolumeSource& source, const Options& options);
 
     const VolumeInfo& info() const { return volume_->info(); }
@@ -142,8 +142,8 @@ public:
     /// ambient occlusion until the look switches it off.
     bool has_occlusion(const Look& look);
     bool occlusion_has_no_room() const { return occlusion_has_no_room_; }
-    /// Frees memory that pictures can do without, and adds a message that states the reason `why`. Returns false if
-    /// there was no such memory. Must not be called while a graph that uses the scene is under construction.
+    /// Frees memory that pictures can do without, and adds a message that states the reason `why`. Returns false if no
+    /// such memory is in use. Must not be called while a graph that uses the scene is under construction.
     bool give_way(const std::string& why);
     /// Requests the bricks that the look's ambient occlusion needs.
     void want_occlusion(const Look& look);

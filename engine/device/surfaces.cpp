@@ -8,11 +8,11 @@ namespace shvr {
 
 namespace {
 
-/// Points of rays and boxes are off by a few ulps of the largest number involved; this allows 16 ulps.
+/// Ray and box coordinates are off by a few ulps of the largest number involved; this allows 16 ulps.
 constexpr double ROUNDING = 0x1p-20;
 /// Replaces infinity, since zero times infinity is NaN.
 constexpr double FAR = 1e20;
-/// Up to this many unchanged values are sent again if this avoids splitting a copy.
+/// Up to this many unchanged values are copied again if this saves a separate copy region.
 constexpr uint32_t SHORT_GAP = 16;
 
 template <class Value>

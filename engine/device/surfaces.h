@@ -16,7 +16,7 @@ public:
     explicit SurfaceScene(gpu::Memory& memory) : memory_(memory) {}
 
     /// Replaces all surfaces. If the budget cannot hold the new surfaces, fails and keeps the old ones. Waits for the
-    /// device if it holds surfaces already.
+    /// device if surfaces are on it already.
     void set(SurfaceForest forest);
     /// Replaces a few surfaces, as SurfaceForest::replace does.
     bool replace(std::span<const uint64_t> keys, std::span<const KeyedSurface> surfaces, const VolumeInfo& volume);
