@@ -279,9 +279,9 @@ void Device::create_device(const DeviceOptions& options)
     VkPhysicalDeviceFeatures2 has{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &has12};
     vkGetPhysicalDeviceFeatures2(physical_, &has);
 
-    // Every device supports both. With robust images, out-of-bounds reads return 0; word_at(-1) of density_exact.glsl
-    // at the atlas's edge, whose result is unused, would else be undefined. No kernel accesses buffers out of bounds
-    // (bounds_slow_test.cpp); with robust buffers such a bug gives a wrong pixel, not a lost device or corrupted paint.
+    // Every device supports robust images and buffers. Robust images: word_at(-1) of density_exact.glsl at the atlas's
+    // edge, whose result is unused, reads 0 and is not undefined. Robust buffers: no kernel reads or writes out of
+    // bounds (bounds_slow_test.cpp), but such a bug would give a wrong pixel, not a lost device or corrupted paint.
     VkPhysicalDeviceVulkan13Features want13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
                                             .robustImageAccess = VK_TRUE,
                                             .synchronization2 = VK_TRUE,

@@ -31,8 +31,8 @@ struct Need {
 };
 std::vector<Need> needs_of(const DeviceHas& has);
 
-/// Returns why such a device cannot run the kernels, with the value found and the value expected; null if the device
-/// can run them.
+/// Returns why a device with these limits cannot run the kernels, with the value found and the value expected; null if
+/// the device can run them.
 std::optional<std::string> why_too_limited(const DeviceHas& has);
 
 /// The message for a system without any Vulkan driver.

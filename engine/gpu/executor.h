@@ -95,9 +95,9 @@ public:
     Executor(const Executor&) = delete;
     Executor& operator=(const Executor&) = delete;
 
-    /// Compiles, records and submits the graph. Imported objects then have the states in which the frame will leave
-    /// them. On failure the frame is discarded, and the graph's rollbacks run when the graph is destroyed
-    /// (FrameGraph::unless_submitted).
+    /// Compiles, records and submits the graph. The recorded states of imported objects are then those in which the
+    /// frame will leave the objects. On failure the frame is discarded, and the graph's rollbacks run when the graph is
+    /// destroyed (FrameGraph::unless_submitted).
     Submission submit(FrameGraph graph, const Options& options);
     Submission submit(FrameGraph graph) { return submit(std::move(graph), Options{}); }
     /// Submits and waits.

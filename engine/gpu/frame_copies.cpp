@@ -9,7 +9,7 @@ namespace shvr::gpu {
 
 namespace {
 
-/// Estimates a part's time: the largest part's time, scaled by how much of a part's limits this part uses.
+/// Estimates a part's time from COPY_PART_MS, the time of a part of maximum size, in proportion to the part's size.
 double copy_ms(const std::vector<BufferRegion>& part)
 {
     uint64_t bytes = 0;

@@ -10,7 +10,7 @@ namespace shvr::gpu {
 
 namespace {
 
-/// Returns an upload's placement. Only small uploads go to host-writable device memory, often limited to 256 MiB.
+/// Returns an upload's placement. Host-writable device memory, often only 256 MiB, is for small uploads.
 Placement placement_of(uint64_t bytes)
 {
     constexpr uint64_t MOST = uint64_t{4} << 20;

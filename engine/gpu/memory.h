@@ -1,9 +1,9 @@
 #pragma once
 // Device memory with accounting: every buffer and image has a name, its bytes are counted by name, and two budgets
 // (device, host) are hard limits. Every allocation is first checked against its budget. If the budget or the driver
-// lacks memory, idle memory is freed. Drivers limit the number of allocations, so small buffers share some
-// (memory_block.h), and small images others. Memory released while the device may still use it is freed once the device
-// is done; callers wait for the device only if they need the bytes at once.
+// lacks memory, idle memory is freed. Drivers limit the number of allocations, so small buffers share allocations
+// (memory_block.h), as do small images. Memory released while the device may still use it is freed once the device is
+// done; callers wait for the device only if they need the bytes at once.
 //
 // Used by one thread at a time.
 
@@ -28,8 +28,8 @@ struct Budget {
     uint64_t host_bytes = 0;    ///< 0: 1 GiB of mapped memory
 };
 
-/// Returns three quarters of the device's memory, or half if the memory is shared with the host; at most `left`, the
-/// bytes that other programs leave free according to the driver.
+/// Returns three quarters of the device's memory, or half if the memory is shared with the host, but at most `left`:
+/// the bytes that other programs leave free according to the driver.
 uint64_t automatic_device_bytes(const DeviceTraits& traits, std::optional<uint64_t> left);
 
 /// An allocation would exceed the budget. The message names the budget and a solution.
