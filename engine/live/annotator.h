@@ -28,10 +28,10 @@ PaintOp in_session(PaintOp op, const Session& session);
 
 /// Returns the files in which a session stores its work.
 WorkFiles work_files(const Session& session, const VolumeInfo& volume);
-/// Like work_files() above, with the persistent settings of an `OpenedSession`, except settings that `overridden`
+/// Like work_files() above, but with the session's persistent settings as well, except those that `overridden`
 /// ("key=value") sets for this run only.
 WorkFiles work_files(const Session& session, const VolumeInfo& volume, const std::vector<std::string>& overridden);
-/// Adds the kept settings; for callers that apply Work::kept_settings() and report changes to Work::keep_settings.
+/// Adds persistent settings; for callers that apply Work::kept_settings() and report changes to Work::keep_settings.
 WorkFiles with_kept_settings(WorkFiles files, const Session& session, const std::vector<std::string>& overridden);
 
 class Annotator {
@@ -65,7 +65,7 @@ public:
     /// Returns the exact preview: the voxels that paint(op) would change now. Paints nothing, but waits for the device;
     /// Previewer (engine/live/previewer.h) does not wait.
     PaintPreview preview(const PaintOp& op);
-    /// The same, computed from `answers`: the device's answers for all regions of `op`.
+    /// Like preview() above, but computed from `answers`: the device's answers for all regions of `op`.
     PaintPreview preview(const PaintOp& op, std::span<const RegionAnswer> answers) const;
     /// Paints `op` as one command. Returns the number of voxels whose group changed plus the number whose offset
     /// changed; `last_stroke` has details. All regions of a stroke see the volume as it was before the stroke.

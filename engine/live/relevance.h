@@ -47,7 +47,7 @@ public:
     /// Queries the cube around a point (in voxels), clipped to the volume. Drops an answer that was not taken yet.
     /// Submits nothing while the cube's bricks are being loaded. Fails if the point is not finite.
     void ask(const glm::dvec3& voxel, double threshold, uint64_t now_ns);
-    /// The same for a box of level 0. Fails if the device has no room for the box's bricks.
+    /// Like ask() above, but queries a box of level 0. Fails if the device has no room for the box's bricks.
     void ask(const VoxelBox& box, double threshold, uint64_t now_ns);
     bool is_asking() const { return query_.is_asking(); }
     void drop() { query_.drop(); }

@@ -78,7 +78,7 @@ void Screen::show_probe(const ProbeLook& probe)
                                                                                     : std::optional(probe));
 }
 
-/// Takes the scene's changes. The current pane requested arriving bricks; other panes draw them in their own turns.
+/// Takes the scene's changes. Arriving bricks were requested by the current pane; others redraw in their own turns.
 void Screen::take_changed()
 {
     renderer_.scene().advance();

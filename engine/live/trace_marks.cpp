@@ -9,7 +9,7 @@ namespace shvr {
 
 namespace {
 
-/// Returns at most `most` internodes near a node, sorted by their number of steps from the node.
+/// Returns at most `most` internodes near a node, sorted by their distance from the node in internodes.
 std::vector<uint32_t> links_about(const TraceGraph& trace, uint32_t node, size_t most)
 {
     std::vector<uint32_t> links, nodes{node};

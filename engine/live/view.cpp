@@ -58,7 +58,7 @@ void View::bricks_arrived(const VoxelBox& voxels)
     if (shown_sight_) mark_voxels(voxels, false);
 }
 
-/// Notes that light changed. The patch over the probe is redrawn after all occlusion is updated (submit_occlusion).
+/// Notes that light changed. The patch over the probe is redrawn once all occlusion is updated (submit_occlusion).
 void View::light_changed(const VoxelBox& voxels)
 {
     occlusion_was_renewed_ = true;
@@ -188,7 +188,7 @@ bool View::is_listed(const Sight& sight)
                      {.pixels = sight.pixels, .always_shown = voxels_of_shell(probe_, scene().info())});
 }
 
-/// Returns the requested sight, or a recent one, once the sight's bricks are listed; null until then.
+/// Returns the requested sight if its bricks are listed, or else a recent sight with listed bricks; null if none has.
 View::SightRef View::listed_sight()
 {
     if (!coming_sight_) coming_sight_ = sight_;
