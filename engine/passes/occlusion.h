@@ -11,7 +11,7 @@
 namespace shvr {
 
 struct OcclusionBinding {
-    Resource values;  ///< r8ui, in as many slots as the density atlas has, each with BRICK_TEXELS a side
+    Resource values;  ///< r8ui, with as many slots as the density atlas, each with BRICK_TEXELS a side
     /// r32ui; a brick takes half of BRICK_SIZE a side in the first image and a quarter in the second. Paged bricks are
     /// in slots; bricks of a resident volume are contiguous, in the volume's order.
     std::array<Resource, gpu::OCCLUSION_SIZES> cells{};
@@ -34,7 +34,7 @@ struct OcclusionTaps {
     std::array<uint32_t, gpu::OCCLUSION_SIZES + 1> end{};          ///< ends in `taps`: near taps, then each cell size
     double near_stretch = 0.0;                                     ///< ray length covered by the first near tap
     std::array<double, gpu::OCCLUSION_SIZES> stretches{1.0, 1.0};  ///< ray length covered by one tap, per cell size
-    std::array<uint32_t, gpu::OCCLUSION_SIZES> aprons{};           ///< how many cells around a brick taps reach
+    std::array<uint32_t, gpu::OCCLUSION_SIZES> aprons{};           ///< how many cells beyond a brick its taps reach
 };
 /// The largest radius, in voxels of any level.
 inline constexpr double OCCLUSION_MAX_RADIUS = gpu::OCCLUSION_REACH * gpu::BRICK_SIZE - 4.0;
@@ -46,7 +46,7 @@ uint32_t occlusion_reach(double radius);
 
 /// Sets `slots` to fully lit.
 void occlusion_reset(FrameGraph& graph, OcclusionBinding& occlusion, std::span<const uint32_t> slots);
-/// Initializes new images as fully lit and transparent. Slot 0, which stands for missing bricks, stays so.
+/// Initializes new images as fully lit and transparent. Slot 0, which stands for missing bricks, keeps these values.
 void occlusion_begin(FrameGraph& graph, OcclusionBinding& occlusion);
 
 struct OcclusionCellsInput {

@@ -37,8 +37,8 @@ double turns_of_integral(const gpu::RaycastParams& params, uint64_t levels)
 /// Maximum number of steps of a ray in one dispatch.
 uint64_t steps_of_block(const VolumeBinding& volume, const RaycastInput& input, bool is_shelled)
 {
-    // Maximum number of iterations of the separate loop that finds a place; in paged bricks, the loop takes one
-    // iteration per directory level. Unrolled loops of fixed length do not count (mask.glsl, groups.glsl, search.glsl).
+    // Maximum number of iterations of the separate loop that finds a position's brick or cell; in paged bricks, one per
+    // directory level. Unrolled loops of fixed length do not count (mask.glsl, groups.glsl, search.glsl).
     const uint64_t levels = volume.pages ? volume.pages->depth : 0;
     const uint64_t to_leap = 1 + levels;
     const uint64_t to_search = to_leap + 1 + gpu::SEARCH_AHEAD * levels;  // all iterations but the last advance
@@ -223,7 +223,7 @@ struct Area {
 };
 
 /// The iso-surface kernel takes twice as long per ray even for rays that never meet the iso-surface. So the pixels
-/// above, below and on both sides of the surface's pixels are drawn by the kernel without it.
+/// above, below and on both sides of the surface's pixels are drawn by the kernel without an iso-surface.
 std::vector<Area> areas_of(const RaycastInput& input, bool is_shelled)
 {
     const glm::uvec2 size = input.params.pixel_end - input.params.pixel_begin;
@@ -283,7 +283,7 @@ void bind_rays(FrameGraph& graph, Pass& pass, const RaycastInput& input, std::op
         rays = is_first && (!is_begun || !input.waiting) ? pass.write("rays", *rays) : pass.modify("rays", *rays);
 }
 
-/// `is_begun`: whether other pixels of the target and of `rays` were already drawn.
+/// `is_begun`: whether other pixels of the target and of `rays` have been drawn already.
 Resource raycast_block(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& input, bool is_shelled,
                        Resource target, std::optional<Resource>& rays, bool is_begun)
 {
@@ -372,7 +372,7 @@ Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& i
     const bool shell_keeps_rays = input.waiting || steps > steps_of_block(volume, input, true);
     const Choice shelled = choice_of(volume, input, true, shell_keeps_rays);
     if (is_shelled) expect_next(graph, shelled, input, shelled.kept);
-    // Draws the pixels that need no iso-surface, including those around its region.
+    // The kernel that draws the pixels without an iso-surface, including those outside the iso-surface's region.
     const Choice plain = choice_of(volume, input, false, input.waiting);
     if (is_shelled) graph.expect(kernel_of(plain, input));
     expect_next(graph, plain, input, shelled.kept);

@@ -9,7 +9,7 @@ namespace shvr {
 
 namespace {
 
-/// Lists the surfaces of each tile. `tiles` contains the words written by earlier blocks.
+/// Lists the surfaces of each tile. `tiles` already contains the words written by earlier blocks of nodes.
 Resource tiles_block(FrameGraph& graph, const SurfacesInput& input, Resource tiles)
 {
     const glm::uvec2 pixels = input.params.pixel_end - input.params.pixel_begin;
