@@ -43,7 +43,7 @@ struct PageTree {
     /// belongs to a leaf (`leaf_of_entry`), the caller fills in the brick to draw.
     std::vector<uint32_t> entries;
     std::vector<uint32_t> leaf_of_entry;
-    /// Entries of leaf i: `entries_of_leaves`[`begin_of_leaf`[i] ... `begin_of_leaf`[i + 1] - 1], the inverse mapping.
+    /// Inverse of `leaf_of_entry`: leaf i has `entries_of_leaves`[`begin_of_leaf`[i] ... `begin_of_leaf`[i + 1] - 1].
     std::vector<uint32_t> entries_of_leaves, begin_of_leaf;
 };
 

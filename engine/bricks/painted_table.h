@@ -16,9 +16,9 @@ struct PaintedBrick {
     uint32_t slot = 0;  ///< never gpu::NO_SLOT, which marks free entries
 };
 
-/// The table in the layout of shaders/library/mask.glsl: the index of its last entry, then its entries
-/// (gpu::MASK_ENTRY). It has at least two entries per brick, and twice as many if inserting fails after a few hundred
-/// moves.
+/// A cuckoo hash table in the layout of shaders/library/mask.glsl: the index of its last entry, then its entries
+/// (gpu::MASK_ENTRY). At least half of the entries are free; the table is twice as large if an insertion moves hundreds
+/// of bricks without finding a free entry.
 std::vector<uint32_t> painted_table(std::span<const PaintedBrick> bricks);
 
 }  // namespace shvr
