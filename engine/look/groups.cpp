@@ -8,7 +8,7 @@ namespace shvr {
 
 namespace {
 
-/// Found by the search in tests/unit/look/group_palette_test.cpp; the most distinct colours come first.
+/// Default colours, found by the search in tests/unit/look/group_palette_test.cpp; the most distinct come first.
 constexpr const char* GROUP_COLORS[] = {"#fe3099", "#1817ff", "#cbf200", "#09979d", "#ce97ff",
                                         "#1b5b3d", "#95088c", "#686505", "#02cac2", "#9d61f7"};
 

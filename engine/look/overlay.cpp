@@ -15,7 +15,7 @@ constexpr double TRACE_WIDTH = 2.5;  ///< for highlighted parts of the trace
 constexpr double HALO = 2.0;         ///< pixels added around a stroke, to set it off from what is behind it
 constexpr double DASH = 5.0, GAP = 4.0;
 constexpr glm::dvec3 DARK(0.02);
-/// Colours of the axes x, y and z. All four also colour the frustum edges that lead away from the eye.
+/// Colours of the axes x, y and z, and one more; a frustum's edges that lead away from the eye have these four colours.
 constexpr std::array<glm::dvec3, 4> COLORS{glm::dvec3(0.87, 0.05, 0.03), glm::dvec3(0.05, 0.55, 0.08),
                                            glm::dvec3(0.06, 0.22, 0.95), glm::dvec3(0.95, 0.45, 0.02)};
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr uint32_t MIN_PANE = 16;      ///< pixels a side
 constexpr double SLICE_MARGIN = 1.05;  ///< height of a slice's view, relative to the volume's
-constexpr double MAP_MARGIN = 1.5;     ///< likewise for maps, which also show the camera outside of the volume
+constexpr double MAP_MARGIN = 1.5;     ///< likewise, for maps, which also show a camera outside the volume
 
 PixelBox part_of(const glm::uvec2& pixels, const glm::uvec2& counts, const glm::uvec2& at)
 {
@@ -187,7 +187,7 @@ SliceSettings slices_following(const SliceSettings& slices, const std::vector<Pa
 {
     const glm::dvec3 seen = glm::clamp(probe_voxel, glm::dvec3(0.0), glm::dvec3(volume.size)) * volume.spacing;
     glm::bvec3 follows(false);
-    int held_axis = -1;  // normal of the slice under the mouse, if the probe is visible there; others then do not move
+    int held_axis = -1;  // the slice under the mouse if the probe is visible there: it must not move
     for (size_t i = 0; i < panes.size(); ++i) {
         const Pane& pane = panes[i];
         if (!pane.shot.is_slice) continue;

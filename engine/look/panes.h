@@ -47,8 +47,8 @@ struct SliceSettings {
     std::optional<double> black, white;  ///< intensities; default: the limits of the volume's range
     double paint_share = 0.5;            ///< share of the group's colour in a painted voxel's colour
     double zoom = 1.0;                   ///< zoom of all slices; 1: the whole volume fits
-    std::optional<glm::dvec3> center;    ///< voxel at their centre; default: the volume's centre, or the probe if
-                                         ///< zoomed in
+    std::optional<glm::dvec3> center;    ///< voxel at the centre of all slices; default: the volume's centre, or the
+                                         ///< probe if zoomed in
     bool operator==(const SliceSettings&) const = default;
 };
 

@@ -15,8 +15,8 @@
 namespace shvr {
 
 /// Entry [back * entries + front] is for a step from sample `front` to sample `back`, `step_voxels` reference lengths
-/// long: linear RGB times opacity, opacity, and optical depth. Ignores densities at which rays end (opaque_intervals),
-/// or steps that only come near them would be opaque too. Takes about 20 ms for 256 samples on one core.
+/// long: linear RGB times opacity, opacity, and optical depth. Ignores densities at which rays end (opaque_intervals);
+/// otherwise, steps that only come near such a density would be opaque. Takes about 20 ms for 256 samples on one core.
 BakedTable preintegrated_table(const TransferFunction& function, double step_voxels, const Samples& samples);
 
 /// Like `visible_intervals` of transfer_function.h, for a pre-integrated table: an interval counts if a step between

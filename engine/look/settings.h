@@ -34,7 +34,7 @@ struct OcclusionSettings {
     bool operator==(const OcclusionSettings&) const = default;
 };
 
-/// Returns the visible share of light of which the share `arrives` reaches a point, at full strength.
+/// Maps `arrives`, the share of ambient light that reaches a point, to the share that is shown at strength 1.
 double seen_of(const OcclusionSettings& settings, double arrives);
 
 struct Light {

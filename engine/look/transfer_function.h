@@ -81,8 +81,8 @@ std::vector<OpaqueInterval> opaque_intervals(const TransferFunction& function);
 /// the range j..k is visible exactly if result[k+1] - result[j] > 0. Counts are integers, so the difference is exact.
 /// The result has `entries` elements.
 std::vector<uint32_t> visible_intervals(std::span<const glm::vec4> table);
-/// Likewise for the function itself, including peaks between two samples. An intensity on the border of two intervals
-/// counts in both.
+/// Like visible_intervals() above, but computed from the function itself, including peaks between two samples. An
+/// intensity on the border of two intervals counts in both.
 std::vector<uint32_t> visible_intervals(const TransferFunction& function, const Samples& samples);
 
 }  // namespace shvr
