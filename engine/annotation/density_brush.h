@@ -35,8 +35,8 @@ struct DensityBrush {
 /// threshold are visible already.
 double automatic_offset(double lowest_point, double paint_threshold);
 
-/// Applies the rule of density.h to values stored as bits of the type: returns the new offset of a voxel whose offset
-/// is `old`, with P = `most` and p(v) = `here`.
+/// Applies the rule of density.h: returns the new offset of a voxel. All offsets are given as bits
+/// (engine/volume/offset_brick.h): `old` is the voxel's offset, `most` is P, and `here` is p(v).
 uint32_t painted_offset(VoxelType type, uint32_t old, uint32_t most, uint32_t here);
 
 class DensityStroke {
@@ -57,8 +57,8 @@ private:
     double offset_;
     Falloff falloff_;
     VoxelSelection selection_;
-    std::map<int64_t, std::unique_ptr<OffsetBrick>> strongest_;  ///< strongest p of each selected voxel over all
-                                                                 ///< positions
+    std::map<int64_t, std::unique_ptr<OffsetBrick>> strongest_;  ///< brick -> per selected voxel, its p of greatest
+                                                                 ///< magnitude over all positions
 };
 
 }  // namespace shvr

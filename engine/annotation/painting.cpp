@@ -6,7 +6,7 @@ namespace shvr {
 
 namespace {
 
-/// Appends runs that give voxels `first` ... `end` - 1 of a brick the group of the rule, omitting voxels it protects.
+/// Appends runs that give the rule's group to voxels `first` ... `end` - 1 of a brick, except voxels the rule protects.
 void append_runs(std::vector<MaskRun>& runs, const MaskBrick& before, size_t first, size_t end, const PaintRule& rule)
 {
     while (first < end) {

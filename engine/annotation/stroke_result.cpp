@@ -164,7 +164,7 @@ void StrokeTally::add(const Mask& before, const VoxelSelection& selection, std::
             result_.regrouped += voxels;
             if (run.before != 0) result_.taken_from[run.before] += voxels;
         }
-    // The set counts each voxel once: a later answer of the device may raise the same voxel further.
+    // `raised_` counts each voxel once, although a later answer of the device may raise the same voxel further.
     for (const DensityBrickChange& change : offsets)
         for (const DensityRun& run : change.runs)
             result_.raised += set_bits(raised_[change.brick], run.first, run.last);

@@ -18,7 +18,7 @@ struct StrokeResult {
     ByGroup taken_from{};                        ///< voxels of `regrouped` by the group that lost them
     ByGroup kept_locked{};                       ///< selected, but in a locked group
     int64_t kept_locked_out = 0;                 ///< selected, but unchanged because the painted group is locked
-    int64_t kept_painted = 0;  ///< selected, but painted, and the brush is limited to unpainted voxels
+    int64_t kept_painted = 0;  ///< selected, but already painted, and the brush is limited to unpainted voxels
 
     /// Number of voxels that changed their group, plus number of voxels that changed their offset.
     int64_t voxels() const { return regrouped + raised; }
@@ -27,8 +27,8 @@ struct StrokeResult {
     bool operator==(const StrokeResult&) const = default;
 };
 
-/// Counts the effects of a stroke over all answers of the device (one or more). A voxel that several answers select
-/// counts once.
+/// Counts the effects of a stroke, whose selected voxels come from the device in one or more answers. A voxel that
+/// several answers select counts once.
 class StrokeTally {
 public:
     explicit StrokeTally(const PaintOp& stroke);

@@ -37,7 +37,7 @@ std::vector<MaskBrickChange> load_mask(const std::filesystem::path& path, const 
     const FileDescriptor file = open_voxels(path, size, 1, ".mask");
     const glm::i64vec3 counts = (size + Size3(BRICK_SIDE - 1)) / Size3(BRICK_SIDE);
     std::vector<MaskBrickChange> changes;
-    std::map<int64_t, std::vector<MaskRun>> layer;  // runs of each painted brick, collected so far
+    std::map<int64_t, std::vector<MaskRun>> layer;  // brick -> runs of painted voxels read so far
     std::vector<uint8_t> bytes;
     for_each_strip(size, [&](const VoxelStrip& strip) {
         bytes.resize(strip.voxels());

@@ -12,8 +12,8 @@ namespace shvr {
 /// file untouched. An exception from `progress` cancels the save.
 void save_mask(const std::filesystem::path& path, const Mask& mask, const Progress& progress = {});
 
-/// Fails, naming both sizes, unless the file holds exactly one byte per voxel of `size`. Returns records, so that
-/// loading is a command like any other.
+/// Fails, naming both sizes, unless the file holds exactly one byte per voxel of `size`. Returns change records, so
+/// that loading can be undone like any command.
 std::vector<MaskBrickChange> load_mask(const std::filesystem::path& path, const Size3& size);
 
 }  // namespace shvr

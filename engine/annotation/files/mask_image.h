@@ -32,7 +32,7 @@ std::optional<MaskJournal> journal_of_mask(const std::filesystem::path& mask);
 std::filesystem::path journal_is_named_in(const std::filesystem::path& mask);
 
 /// Fails if the mask was painted on an image with another hash, or if MASK.json is malformed. Accepts an empty hash or
-/// a missing MASK.json. `is_other_name` returns whether a different hash stands for the same image; empty: never.
+/// a missing MASK.json. `is_other_name(hash)`: whether this different hash stands for the same image; empty: never.
 void check_mask_image(const std::filesystem::path& mask, const std::string& content_hash,
                       const std::function<bool(const std::string& hash)>& is_other_name = {});
 

@@ -39,7 +39,7 @@ std::string renumbered_in_words(const std::vector<NrrdSegment>& segments)
     return words;
 }
 
-/// Adds the records of a mask to `mask`, placed where the mask's file states.
+/// Converts the mask in `source` to changes of `mask`, placed as the file at `path` states.
 void take_placed(const VolumeSource& source, const std::filesystem::path& path, const TraceSpace& space,
                  ImportedMask& mask)
 {

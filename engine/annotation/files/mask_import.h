@@ -29,7 +29,7 @@ bool is_mask_writable(const std::filesystem::path& path);
 /// NAME.labels.zarr next to it. A path in an archive is returned unchanged, although masks cannot be saved there.
 std::filesystem::path saved_mask_path(const std::filesystem::path& mask);
 /// Saves in the format that the path names, or as raw bytes if `export_mask` does not support that format. Fails for
-/// read-only formats. `image`, `foreign` and the returned sentence are as for `export_mask`.
+/// read-only formats. `image`, `foreign` and the returned message are as for `export_mask`.
 std::string save_mask_as(const std::filesystem::path& path, const Mask& mask, const VolumeInfo& volume,
                          const LabelImage& image = {}, Foreign foreign = Foreign::refused,
                          const Progress& progress = {});

@@ -27,7 +27,7 @@ bool states_position(const TraceSpace& space)
     return !space.frame.empty() || space.origin != glm::dvec3(0.0) || space.directions != glm::dmat3(1.0);
 }
 
-/// The place of a mask on the volume's grid or, if it has none, the reason.
+/// The place of a mask on the volume's grid or, if there is none, the reason.
 struct Trial {
     std::optional<GridPlace> place{};
     std::string reason{};
@@ -121,7 +121,7 @@ std::optional<GridPlace> place_of_mask(const std::filesystem::path& path, const 
     };
     if (!states_position(found))
         refuse("it states no position; expected the size of this volume, or an origin from which it is placed");
-    // A frame without a name is compatible with any frame.
+    // A coordinate frame without a name is compatible with any frame.
     const bool may_be_same = found.frame == volume.frame || found.frame.empty() || volume.frame.empty();
     Trial trial;
     if (may_be_same) trial = try_place(found, volume, glm::dvec3(1.0));
@@ -196,7 +196,7 @@ void PlacedSource::read(const VoxelBox& box, std::span<std::byte> voxels) const
     const Size3 size = of_mask.size();
     std::vector<std::byte> found(size_t(size.x * size.y * size.z) * voxel_bytes);
     mask_.read(of_mask, found);
-    // Distances, in voxels of the volume's box, between neighbours along the mask's axes.
+    // Steps of the linear index in the volume's box from a voxel to its neighbours along the mask's axes.
     const Size3 strides(1, box.size().x, box.size().x * box.size().y);
     int64_t begin = index_of(part.lower - box.lower, box.size());
     Size3 step(0);

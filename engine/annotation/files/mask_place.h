@@ -11,7 +11,7 @@
 
 namespace shvr {
 
-/// Maps voxel v of a mask to voxel `first` + sum over the mask's axes a of sign[a] * v[a] along axis[a] of the volume.
+/// Maps voxel v of a mask to the volume's voxel `first` + sum, over the mask's axes a, of sign[a] * v[a] along axis[a].
 struct GridPlace {
     std::array<int, 3> axis{0, 1, 2};
     std::array<int, 3> sign{1, 1, 1};
@@ -19,7 +19,7 @@ struct GridPlace {
     bool operator==(const GridPlace&) const = default;
 };
 
-/// Returns the place that the mask's file states. Returns null if the mask's voxels are the volume's: equal sizes and,
+/// Returns the place that the mask's file states. Returns null if mask and volume have the same grid: equal sizes and,
 /// if both state a place, equal places. Fails, with the reason, if the mask is not on the volume's grid: other spacing
 /// or direction, a shift by a fraction of a voxel, no stated position, or no voxel in common.
 std::optional<GridPlace> place_of_mask(const std::filesystem::path& path, const VolumeInfo& mask,

@@ -17,16 +17,16 @@
 
 namespace shvr {
 
-/// Returns the header of an NRRD mask, or the header that a label image keeps; null if there is none or it cannot be
+/// Returns the header of an NRRD mask, or the NRRD header kept in a label image; null if there is none or it cannot be
 /// read. SHVR does not interpret all of it (terminology, keys of other programs), but keeps it in saves and exports.
 std::optional<NrrdHead> mask_header(const std::filesystem::path& mask);
-/// Returns the header to keep when a mask is saved as `path`: that of the mask at `path`, plus the segments and keys of
-/// segments that only `earlier` has; without a mask there, `earlier`. Segments are identified by their group.
+/// Returns the header to keep when a mask is saved as `path`: `earlier` or, if `path` holds a mask, that mask's header
+/// plus the segments that only `earlier` has, with their keys. Segments are identified by their group.
 std::optional<NrrdHead> header_to_keep(const std::filesystem::path& path, const std::optional<NrrdHead>& earlier);
 
 /// Describes the groups of this mask as segments in the header of an NRRD file. Segments in `head` keep their numbers
-/// and all other keys; groups without a segment get a new one. Does nothing unless the file's name ends in .seg.nrrd or
-/// the header has segments. `looks`: names and colours of groups.
+/// and all their other keys; groups without a segment get a new one. Does nothing unless the file's name ends in
+/// .seg.nrrd or the header has segments. `looks`: names and colours of groups.
 void describe_segments(NrrdHead& head, const std::filesystem::path& path, const Mask& mask,
                        const std::vector<LabelImage::Color>& looks);
 

@@ -16,7 +16,7 @@ namespace shvr {
 DensityField import_offsets(const std::filesystem::path& path, const TraceSpace& space, VoxelType type);
 
 /// Saves in the format that the path names, or as raw numbers if `export_offsets` does not support that format. Fails
-/// for read-only formats. `foreign` and the returned sentence are as for `export_mask`.
+/// for read-only formats. `foreign` and the returned message are as for `export_mask`.
 std::string save_offsets_as(const std::filesystem::path& path, const DensityField& field, const VolumeInfo& volume,
                             Foreign foreign = Foreign::refused, const Progress& progress = {});
 

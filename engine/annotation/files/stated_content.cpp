@@ -22,7 +22,7 @@ namespace {
 
 constexpr size_t HEADER_BYTES = size_t{64} << 10;
 constexpr int MAX_LABELS = 64;
-/// Least share of equal pairs among labelled neighbours: labels differ only at their borders, intensities everywhere.
+/// Minimum share of equal values among neighbouring voxels that are not 0: in a label image, only borders differ.
 constexpr double MIN_EQUAL = 0.9;
 
 /// The first lines of an NRRD file, up to its voxels; empty for any other file.
@@ -52,7 +52,7 @@ struct ValueCounts {
     std::array<bool, 256> is_there{};
     int values = 0;
     int64_t pairs = 0, equal = 0;  ///< pairs of neighbours that are not 0; equal pairs
-    bool are_labels = true;        ///< false: a mask cannot hold a value, or there are too many
+    bool are_labels = true;        ///< false: a value does not fit into a mask, or there are too many different values
 
     template <class T>
     void add_row(const T* row, int64_t count)

@@ -13,7 +13,7 @@ bool states_its_size(const std::filesystem::path& path);
 /// Whether the path is an OME-Zarr archive or a path inside one. Masks in archives are read, but never written.
 bool is_in_archive(const std::filesystem::path& path);
 
-/// Fails if size, or a spacing or place that both state, differs in `found`; names both. `what`: "a mask".
+/// Fails, naming both values, if `found` differs in size or in a spacing or place that both state. `what`: "a mask".
 void check_place(const std::filesystem::path& path, const char* what, const VolumeInfo& found, const TraceSpace& space);
 
 /// Describes a volume of annotation ("mask" or "offsets") at the same place as the annotated volume.

@@ -54,7 +54,7 @@ private:
     int64_t count_ = 0;
 };
 
-/// A run of painted voxels in a row, `first` to `last`. `gap`: the set of the unpainted voxels before the run.
+/// A run of painted voxels in a row, `first` to `last`. `gap`: union-find set of the unpainted voxels before the run.
 struct Run {
     int64_t first = 0, last = 0;
     uint32_t set = 0, gap = 0;
@@ -162,7 +162,7 @@ private:
     uint64_t pattern_;
 };
 
-/// Bricks with the same y and z, by ascending x; none in a row that only closes the cells of painted rows.
+/// Painted bricks with the same y and z, ascending in x. Empty for a row that is only needed next to painted rows.
 struct BrickRow {
     int64_t y = 0;
     std::vector<std::pair<int64_t, const MaskBrick*>> bricks;  ///< x of the first voxel

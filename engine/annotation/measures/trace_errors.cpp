@@ -62,7 +62,7 @@ void TraceErrors::leave_out_superfluous()
         if (!is_needed(segment) && note_superfluous(segment)) leave_out(segment);
 }
 
-/// Counts a segment that is not needed as an error; returns false if it is no error.
+/// If this segment, which is not needed, is an error, counts it and returns true.
 bool TraceErrors::note_superfluous(size_t segment)
 {
     const TraceSegment& one = with_.match.segments()[segment];
@@ -71,7 +71,7 @@ bool TraceErrors::note_superfluous(size_t segment)
         ++superfluous_;
         return true;
     }
-    // A trace that extends beyond an end of the truth, within the ball of that end, is too long. That is no error.
+    // A trace may extend beyond an end of the truth if it stays in the ball of that end. This is not an error.
     if (degree(is_loose(front) ? back : front) < 3) return false;
     ++spurs_;
     return true;
@@ -231,7 +231,7 @@ bool TraceErrors::is_attached(const Piece& piece, size_t truth_segment, uint32_t
     });
 }
 
-/// Returns the segments of the trace that pass a branch: they follow two of its segments without its paired node.
+/// Returns the trace's segments that pass a branch: they follow two of its segments, but miss the node paired with it.
 std::set<size_t> TraceErrors::passing(uint32_t branch) const
 {
     std::map<size_t, int> followed;

@@ -63,7 +63,7 @@ void TraceMatch::pair_nodes()
     }
 }
 
-/// Finds, for each internode of the trace, the segments of the truth near the internode's whole length.
+/// Finds, for each internode of the trace, the segments of the truth that are near it along its whole length.
 void TraceMatch::find_near()
 {
     for (const auto& [number, internode] : trace_.internodes()) {

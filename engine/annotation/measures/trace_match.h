@@ -22,11 +22,11 @@ public:
     /// Those nodes of the trace.
     const std::set<uint32_t>& stops() const { return stops_; }
 
-    /// The segments of the trace; they end at `stops()`, too.
+    /// The segments of the trace, which also end at the nodes in `stops()`.
     const std::vector<TraceSegment>& segments() const { return segments_; }
-    /// The segment of the truth that a segment of the trace stands for, if any; one to one. Their ends are paired, and
-    /// each is near the other along its whole length. If several segments join the same two nodes, those with the
-    /// smallest mean squared distance are matched first.
+    /// The segment of the truth that a segment of the trace stands for, if any; one to one. The ends of the two are
+    /// paired, and each segment is near the other along its whole length. If several segments join the same two nodes,
+    /// those with the smallest mean squared distance are matched first.
     std::optional<size_t> partner_of(size_t segment) const { return partners_[segment]; }
 
     /// Whether a segment of the truth is found (trace_score.h).

@@ -86,7 +86,7 @@ double share_in_mask(const Mask& mask, const glm::dvec3& spacing, const glm::dve
     constexpr double MAX_VOXELS = double(int64_t{1} << 31);
     const glm::dvec3 centre = position / spacing, reach = radius / spacing;
     const glm::dvec3 box = 2.0 * reach + 1.0;
-    // A small box does not ensure a small position, so `centre` must be in the range of int64_t, too.
+    // `centre` must be in the range of int64_t, too: even a small box may be far from the origin.
     if (!(box.x * box.y * box.z <= MAX_VOXELS) || !glm::all(glm::lessThan(glm::abs(centre), glm::dvec3(1e18))))
         fail("the ball of radius ", digits_of(radius), " at ", digits_of(position),
              " has a bounding box of more than 2147483648 voxels; expected a smaller radius");

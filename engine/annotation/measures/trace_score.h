@@ -67,7 +67,7 @@ struct TraceComparison {
     /// Places along a segment of the truth between two traced parts that are not joined to each other. For a partly
     /// traced ring, one more place is counted.
     int64_t breaks = 0;
-    /// Other side branches with a loose end that alone follow the truth for less than half of the branch's length.
+    /// Side branches with a loose end, not counted above, that alone follow the truth for under half of their length.
     int64_t spurs = 0;
     /// Like `spurs`, but with no or two loose ends: small loops, rungs, and pieces that are joined to nothing.
     int64_t superfluous = 0;

@@ -7,7 +7,7 @@ namespace shvr {
 
 namespace {
 
-/// The new groups of voxels that are now in `group`, and of those that are now in `with`.
+/// The groups that the voxels of `group`, and those of `with`, get.
 struct Replacement {
     uint8_t of_group, of_with;
 };

@@ -103,7 +103,7 @@ void Outside::join_gap(const Size3& from, int64_t to_x, uint32_t label)
             components_.join(label, outside_);
             continue;
         }
-        // The gaps of the neighbouring row that touch this gap: the gap next to `from`, and the gap after each brick.
+        // The neighbouring row's gaps touching this gap: the one at `from`, and those after its bricks before `to_x`.
         if (!row->contains(from.x)) components_.join(label, label_of_gap(beside));
         for (auto brick = row->lower_bound(from.x); brick != row->end() && brick->first + 1 < to_x; ++brick) {
             const int64_t after = brick->first + 1;

@@ -34,7 +34,7 @@ struct IslandsOp {
     enum class Keep { all, largest, at_least, at };
     int64_t group = 1;
     Keep keep = Keep::all;
-    std::optional<int64_t> voxels{};    ///< with `at_least`: fewest voxels of a part to keep; or `mm3`
+    std::optional<int64_t> voxels{};    ///< with `at_least`: a part with fewer voxels is erased; alternative to `mm3`
     std::optional<double> mm3{};        ///< the same as a volume
     std::optional<glm::dvec3> at{};     ///< with `at`: position in the part to keep, in voxels
     std::optional<int64_t> split_from;  ///< group of the largest part; the next parts get the next groups
@@ -57,8 +57,8 @@ struct FillHolesOp {
 };
 
 /// Fills between painted slices, such as every tenth one: between two neighbouring slices with voxels of the group, the
-/// shape is interpolated by signed distances. A slice in between gets all voxels that both shapes have, and none that
-/// neither has; so shapes that neither overlap nor touch are not joined.
+/// shape is interpolated by signed distances. A slice in between gets each voxel that is in both shapes, and no voxel
+/// that is in neither shape; so shapes that neither overlap nor touch are not joined.
 struct FillBetweenOp {
     enum class Axis { x, y, z };
     int64_t group = 1;
@@ -117,7 +117,7 @@ struct SmoothOp {
         median,   ///< all voxels within the distance weigh the same
         gaussian  ///< standard deviation distance / 2, truncated at the distance along each axis
     };
-    std::vector<uint8_t> groups{};  ///< voxels change only if they leave or join one of these; empty: all groups
+    std::vector<uint8_t> groups{};  ///< voxels change only if their old or new group is one of these; empty: any voxel
     double distance = 0.0;          ///< in the unit of the volume's spacing
     Method method = Method::median;
     OperationLimits limits{};
@@ -150,9 +150,9 @@ struct MaskFromTraceOp {
 /// Adds the centre lines of a group to the trace; radii are distances to the group's surface. Changes no voxel.
 struct TraceFromMaskOp {
     int64_t group = 1;
-    /// Removes a line with a loose end if its length plus end radius is at most this many radii of its branch.
+    /// Removes a line with a loose end if its length plus the radius there is at most this many radii of its branch.
     double spur = 1.5;
-    std::optional<double> tolerance{};  ///< of positions and radii if nodes are left out; null: longest side of a voxel
+    std::optional<double> tolerance{};  ///< largest error of positions and radii; null: longest side of a voxel
     static constexpr bool ADDS_TRACE = true;
 };
 
@@ -161,7 +161,7 @@ struct OperationRow {
     const char* id = "";       ///< never changes: files refer to it
     const char* title = "";    ///< "Fill holes"
     const char* meaning = "";  ///< one sentence
-    const char* alias = "";    ///< alternative name in scripts; another action has it as its id
+    const char* alias = "";    ///< alternative name in scripts; `id` differs, as another action has this id
 };
 template <class KindOfRow, class VisitFields>
 struct FullOperationRow : OperationRow {

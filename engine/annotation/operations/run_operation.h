@@ -1,6 +1,6 @@
 #pragma once
-// Computes an operation's changes as records without changing anything itself; the caller makes the records one command
-// of the history. Any thread may call these on a copy of the mask.
+// Computes an operation's changes as records without changing anything itself; the caller adds the records to the
+// history as one command. Any thread may call these on a copy of the mask.
 
 #include "engine/annotation/operations/mask_edit.h"
 #include "engine/annotation/operations/operations.h"

@@ -173,7 +173,7 @@ Winners median_winners(const Surroundings& around, std::span<const KernelRow> ba
     return winners;
 }
 
-/// Weights at 0, 1, ... voxels along an axis; at most 1024 each, so that the product of three sums fits into 64 bits.
+/// Gaussian weights at 0, 1, ... voxels along an axis, up to 1024, so that the product of three sums fits into 64 bits.
 std::vector<uint64_t> gaussian_along(double spacing, double distance, int64_t voxels)
 {
     std::vector<uint64_t> weights;
@@ -187,7 +187,7 @@ std::vector<uint64_t> gaussian_along(double spacing, double distance, int64_t vo
 /// A weight for each voxel of a box, x fastest.
 using Weights = std::vector<uint64_t>;
 
-/// One pass along an axis over the weights `from` of the voxels in `box`. Crops result and `box` to the core there.
+/// One pass along `axis` over the weights `from` of the voxels in `box`. Crops result and `box` to the core there.
 Weights blurred(const Weights& from, VoxelBox& box, const VoxelBox& core, int axis, std::span<const uint64_t> along)
 {
     VoxelBox cut = box;

@@ -20,8 +20,8 @@ constexpr PairOfParts PAIRS[] = {{HeadPart::abaxial, HeadPart::adaxial},
                                  {HeadPart::adaxial, HeadPart::floret}};
 constexpr double BINS[] = {0.0, 0.2, 0.4, 0.6, 0.8, 1.0};
 
-/// The rho (distance from the axis in head radii) of each connection between two parts: an internode that joins nodes
-/// of both, or a node without such an internode at which veins of both meet.
+/// The rho (distance from the axis in head radii) of each connection between two parts. A connection is an internode
+/// that joins nodes of both, or a node where veins of both meet, unless such an internode ends there.
 std::vector<double> connections_of(const Head& head, HeadPart one, HeadPart other)
 {
     std::vector<double> found;

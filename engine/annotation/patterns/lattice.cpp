@@ -15,7 +15,7 @@ namespace {
 
 constexpr size_t MIN_FLORETS = 20;
 constexpr double MIN_AGREEMENT = 0.5;  ///< minimum; florets at random reach 0.05
-constexpr double PLAY = 0.2;           ///< largest error of a pair in line, relative to the pair's length
+constexpr double PLAY = 0.2;           ///< largest error of a pair that counts as in line, relative to its length
 
 double azimuth(const glm::dvec3& place)
 {
@@ -53,7 +53,7 @@ std::vector<FloretPair> pairs_of(const std::vector<glm::dvec3>& places)
     return pairs;
 }
 
-/// Mean azimuth and order of pairs to one side. Ignores orders far from the median, which are of another family.
+/// Mean azimuth and order (difference of ranks) of pairs to one side; ignores orders far from the median.
 std::optional<glm::dvec2> mean_vector(const std::vector<const FloretPair*>& pairs)
 {
     if (pairs.size() < 5) return {};
@@ -164,8 +164,8 @@ void refine(Estimate& estimate, std::vector<FloretPair>& pairs)
     assign_steps(estimate, pairs);
 }
 
-/// Agreement beyond chance (as in Cohen's kappa), times the share of florets that have a number. For whorls of two,
-/// half the divergence also fits all pairs, but it numbers only half of the florets.
+/// Agreement beyond chance (as in Cohen's kappa), times the share of florets that have a number: with whorls of two,
+/// half the true divergence also fits all pairs, but numbers only half of the florets.
 double agreement_of(const FloretLattice& lattice)
 {
     double chance = 0.0, agreeing = 0.0;

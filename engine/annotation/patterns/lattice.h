@@ -47,9 +47,9 @@ struct FoundLattice {
     std::optional<FloretLattice> lattice{};
     std::string reason{};
 };
-/// `places`: in the frame of the head, in head radii. Van Iterson's relation gives the first estimates: from the mean
-/// vectors A and B to neighbours on both sides, in azimuth (a) and order (o), follow the numbers of parastichies m = 2
-/// pi A_o / D and n = 2 pi B_o / D with D = A_a B_o - B_a A_o, even if florets are missing; m and n give the
+/// `places`: in the frame of the head, in head radii. Van Iterson's relation gives the first estimates: if A and B are
+/// the mean vectors to the neighbours on both sides, in azimuth (a) and order (o), the numbers of parastichies are m =
+/// 2 pi A_o / D and n = 2 pi B_o / D with D = A_a B_o - B_a A_o, even if florets are missing; m and n give the
 /// divergence. Least squares refine each estimate and its centre. The result is the estimate with which most pairs
 /// agree, and at whose lattice points most florets lie. Takes O(n log n) time.
 FoundLattice find_lattice(const std::vector<glm::dvec3>& places);

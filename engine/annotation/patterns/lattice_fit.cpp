@@ -21,7 +21,7 @@ public:
         for (; root_[floret] != floret; floret = root_[floret]) whorls += from_root_[floret];
         return {floret, whorls};
     }
-    /// Returns whether the step agrees with the known numbers; florets without a known difference are joined by it.
+    /// Returns whether `step` agrees with the known difference of the two florets; if none is known, makes it `step`.
     bool join(uint32_t inner, uint32_t outer, int step)
     {
         const auto [a, from_a] = find(inner);
@@ -143,7 +143,7 @@ double fit_density(const std::vector<glm::dvec3>& places, FloretLattice& lattice
     return found.x;
 }
 
-/// Share of florets within 0.3 times the pairs' median length of their lattice point, around the axis and outwards.
+/// Share of florets at most 0.3 median pair lengths from their lattice points, both around the axis and outwards.
 double share_in_place(const std::vector<glm::dvec3>& places, double constant, const FloretLattice& lattice)
 {
     std::vector<double> lengths;

@@ -10,8 +10,8 @@ namespace shvr {
 void number_whorls(size_t florets, FloretLattice& lattice);
 
 /// Fits divergence, phase and centre to the numbered florets by least squares (weighted by rho^2, so that errors are
-/// lengths), then the density of whorls. Returns the share of all florets that then are within 0.3 times the pairs'
-/// median length of their lattice points, around the axis and outwards.
+/// lengths), then the density of whorls. Returns the share of all florets that end up at most 0.3 median pair lengths
+/// from their lattice points, both around the axis and outwards.
 double fit_lattice(const std::vector<glm::dvec3>& places, FloretLattice& lattice);
 /// The interval of the divergence, by bootstrap.
 void add_interval(const std::vector<glm::dvec3>& places, FloretLattice& lattice);

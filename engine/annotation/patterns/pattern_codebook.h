@@ -1,5 +1,5 @@
 #pragma once
-// The codebook of patterns: the only list of their names. CODEBOOK.md prints it, and a test compares the two.
+// The codebook of pattern measures: the only list of their names. CODEBOOK.md repeats it; a test compares the two.
 
 #include "engine/annotation/patterns/pattern_table.h"
 

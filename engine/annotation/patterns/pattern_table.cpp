@@ -19,8 +19,8 @@ const PatternMeasure* measure_named(std::string_view name)
     return found;
 }
 
-/// 9 significant digits, and 0 for ratios and angles below 1e-9. This hides rounding errors of the standard library's
-/// functions, which differ between machines.
+/// Formats a value with 9 significant digits; ratios and angles below 1e-9 become 0. This hides rounding errors of the
+/// standard library's functions, which differ between machines.
 std::string nine_digits(double value, const PatternMeasure& measure)
 {
     const bool has_length = std::string_view(measure.unit).find("LENGTH") != std::string_view::npos;

@@ -106,7 +106,7 @@ HeadSections head_sections(const std::string& stated, const std::string& option,
     }
     const Parts own = parts;
     for (int number = 1; number < 256; ++number) {
-        int steps = 0;  // a damaged tree of groups may have cycles
+        int steps = 0;  // limits the loop: a damaged tree of groups may have cycles
         for (uint8_t above = group(uint8_t(number)).parent;
              parts[size_t(number)] == HeadPart::none && above != 0 && ++steps < 256; above = group(above).parent)
             parts[size_t(number)] = own[above];

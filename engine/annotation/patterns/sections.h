@@ -15,7 +15,7 @@ const char* name_of(HeadPart part);
 
 struct HeadSections {
     std::array<HeadPart, 256> parts{};  ///< part of each group
-    bool is_stated = false;             ///< by an option or by groups' names, not only by the thesis's numbers
+    bool is_stated = false;             ///< by an option or groups' names, rather than the thesis's numbers only
     /// Numbers of a part's groups, such as "2" or "2+5"; "none" if it has no group.
     std::string groups_of(HeadPart part) const;
 };

@@ -96,7 +96,7 @@ void add_overlaps(const Head& head, const std::vector<uint32_t>& florets, const 
     }
 }
 
-/// Mean, over bundles, of the shortest arc with 9 of 10 of the florets whose nearest bundle it is.
+/// Mean, over all bundles, of the shortest arc that contains 9 of 10 florets whose nearest bundle is this one.
 double sector_width(const Head& head, const std::vector<uint32_t>& florets, const Supply& supply)
 {
     std::vector<std::pair<uint32_t, double>> turns;  // bundle, azimuth in turns

@@ -272,7 +272,7 @@ constexpr OpReader OPS[] = {
     {"expect", [](const JsonNode& line) -> ScriptOp { return read_expect(line); }},
 };
 
-/// Reads an operation on groups, with the keys that its row visits.
+/// Reads an operation on groups. The keys are those that its row of the operation table visits.
 template <size_t INDEX = 0>
 ScriptOp read_operation(const JsonNode& line, std::string_view name)
 {

@@ -55,7 +55,7 @@ class JsonNode;
 
 /// The names of operations, the more common ones first.
 std::vector<std::string_view> script_op_names();
-/// Parses a line whose key "op" must be one of those names. Fails like `read_script`.
+/// Parses a line whose key "op" must be one of `script_op_names`. Fails like `read_script`.
 ScriptOp read_script_op(const JsonNode& line);
 /// The line that parses as this operation.
 std::string line_of(const ScriptOp& op);

@@ -112,7 +112,7 @@ std::string line(const ExpectOp& op)
     return line;
 }
 
-/// Writes an operation on groups, with the keys that its row visits.
+/// Writes an operation on groups. The keys are those that its row of the operation table visits.
 template <class Op>
 requires IS_GROUP_OPERATION<Op> std::string line(const Op& op)
 {

@@ -11,7 +11,7 @@ namespace {
 constexpr int SIDE = int(BRICK_SIDE);
 constexpr uint32_t NO_LABEL = ~0u;
 
-/// The range of y (or z), in a brick `offset` bricks away along that axis, that touches `at` of this brick.
+/// The range of y (or z) in another brick, `offset` bricks away along this axis, that touches `at` in this brick.
 struct Touching {
     int first, last;
 };

@@ -65,7 +65,7 @@ std::vector<TouchingVoxels::Column> TouchingVoxels::triangles() const
     return triangles;
 }
 
-/// Reduces the triangles' boundaries modulo 2, and omits the last edge of each reduced column: triangles fill its loop.
+/// Reduces the triangles' boundary matrix modulo 2; omits each reduced column's last edge, whose loop triangles fill.
 std::vector<Edge> TouchingVoxels::spanning(const Progress& progress) const
 {
     std::unordered_map<uint32_t, Column> filled;

@@ -30,8 +30,8 @@ struct LineGraph {
     /// Removes spurs, shortest first, until none is left: lines from a branch to a loose end whose length plus radius
     /// at the end is at most `spur` times the branch's radius. Returns the number of lines removed.
     int64_t prune(double spur);
-    /// Merges branches that are adjacent, or joined by a line that stays within `tolerance` of the first, unless that
-    /// would remove a loop. A merged branch has the position and radius of the branch with the larger radius.
+    /// Merges branches that are adjacent, or joined by a line that stays within `tolerance` of the first branch, unless
+    /// that would remove a loop. A merged branch has the position and radius of the branch with the larger radius.
     void merge_branches(double tolerance);
     int64_t count_edges() const;
 

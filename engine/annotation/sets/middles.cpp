@@ -98,7 +98,7 @@ double Middles::distance_of(const Place& place, double least)
     return known.distance;
 }
 
-/// The mean of `distance` (to the nearest centre outside) and the greatest distance of a centre nearer than that.
+/// The mean of `distance`, to the nearest voxel centre outside, and the distance of the farthest voxel centre inside.
 double Middles::radius_at(const Place& place, double distance) const
 {
     if (distance == std::numeric_limits<double>::infinity()) return glm::length(glm::dvec3(size_) * spacing_);

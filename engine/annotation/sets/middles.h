@@ -17,7 +17,7 @@ struct MiddleBall {
 
 class Middles {
 public:
-    /// `reach` gives the grid; its distance is not used. Positions beyond the volume do not count as outside the set.
+    /// Uses the grid of `reach`, but not its distance. Positions beyond the volume do not count as outside the set.
     Middles(const BrickSet& set, const Reach& reach);
     /// Climbs from a voxel of the set, by up to four steps of half a voxel, while the distance to the outside grows.
     MiddleBall near(const Size3& voxel);

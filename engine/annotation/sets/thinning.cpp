@@ -17,7 +17,7 @@ constexpr int steps_between(int a, int b, bool is_sum)
     const int x = size(a % 3 - b % 3), y = size(a / 3 % 3 - b / 3 % 3), z = size(a / 9 - b / 9);
     return is_sum ? x + y + z : std::max({x, y, z});
 }
-/// For each of the 27 places, a mask of its neighbours: over faces only (6), or also over edges and corners (26).
+/// For each of the 3 x 3 x 3 places, a bit set of its neighbours: over faces only (6), or over edges and corners too.
 constexpr Masks neighbours(bool over_faces)
 {
     Masks masks{};

@@ -17,8 +17,8 @@ namespace shvr {
 /// Whether removing the middle voxel keeps the topology. Bit x + 3 y + 9 z of `around`: whether the set has that voxel.
 bool is_simple_point(uint32_t around);
 
-/// `reach` gives the grid; its distance is not used. Fill the set's cavities first: they would stay as closed surfaces.
-/// Calls `takes(bytes)` before it allocates memory; `takes` may refuse by an exception.
+/// Uses the grid of `reach`, but not its distance. Fill the set's cavities first: they would stay as closed surfaces.
+/// Calls `takes(bytes)` before it allocates memory; `takes` may refuse by throwing.
 BrickSet thinned(const BrickSet& set, const Reach& reach, const std::function<void(uint64_t)>& takes,
                  const Progress& progress);
 

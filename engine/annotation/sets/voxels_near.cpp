@@ -26,7 +26,7 @@ public:
           along_y_(spacing_.y),
           along_z_(spacing_.z)
     {}
-    /// Adds the voxels near the set, in these bricks of a tile, to `found`.
+    /// Searches these bricks of a tile for voxels near the set, and adds them to `found`.
     void search(const Size3& tile, std::span<const int64_t> bricks, BrickSet& found);
 
 private:
@@ -49,8 +49,8 @@ private:
     VoxelBox grid_;           ///< bricks that the window meets
     std::vector<const BrickBits*> bricks_;
     std::vector<int64_t> places_;      ///< x of the set's voxels in one row of the window
-    std::vector<uint16_t> near_x_;     ///< tile x, window y: distance along x to the set, in voxels, in one slice
-    std::vector<double> near_xy_;      ///< tile x, tile y, window z: squared distance within a slice
+    std::vector<uint16_t> near_x_;     ///< by x in the tile, y in the window: distance in x to the set, in voxels
+    std::vector<double> near_xy_;      ///< by x and y in the tile, z in the window: squared distance within a slice
     std::vector<uint8_t> is_reached_;  ///< by slice of the window: whether near_xy_ has finite values there
 };
 

@@ -134,8 +134,8 @@ std::optional<LocalBall> ball_behind(const DensityAt& density_at, double thresho
     const auto is_near_sight = [&](const glm::dvec3& point) {
         return glm::length(point - from - glm::dot(point - from, direction) * direction) <= aside;
     };
-    // The search starts in front of the visible point: it is where a wall is steepest, and the wall's middle may be a
-    // voxel nearer to the eye. Grains on the line that are thinner than a voxel are skipped as noise.
+    // The search starts in front of the visible point, which lies where a wall's density rises most steeply: the wall's
+    // middle may be a voxel nearer to the eye. Grains on the line that are thinner than a voxel are skipped as noise.
     double begin = -2.0 * structure.finest();
     while (begin <= most) {
         while (begin <= most && !structure.contains(from + begin * direction)) begin += structure.step();

@@ -44,8 +44,8 @@ std::string comments_of(const TraceWriting& writing);
 /// before "physical" or "volume", and a place only after a comment "space physical".
 void read_space_comment(TraceReader& reader, const std::string& where, std::string_view comment);
 
-/// Collects the nodes and internodes of a file; refuses malformed traces, and skips oddities. Every message begins with
-/// `where`.
+/// Collects the nodes and internodes of a file. Refuses malformed traces, and skips elements of other programs that
+/// cannot be used (oddities). Every message begins with `where`.
 class TraceReader {
 public:
     explicit TraceReader(std::string file) : file_(std::move(file)) {}

@@ -37,7 +37,7 @@ private:
     void search(const glm::dvec3& position, const double& most_squared, const Visit& visit) const;
 
     struct Tree {
-        std::vector<Point> points;  ///< the middle point of each range is its median along its longest axis
+        std::vector<Point> points;  ///< k-d tree: the middle point of each range is its median along its longest axis
         std::vector<uint8_t> axes;  ///< the splitting axis of each
         void split(size_t begin, size_t end);
     };

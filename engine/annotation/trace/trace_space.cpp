@@ -71,7 +71,7 @@ glm::dvec3 position_of(const TraceSpace& space, const glm::dvec3& physical)
 std::string why_elsewhere(const TraceSpace& found, const TraceSpace& expected)
 {
     if (!states_place(found) || !states_place(expected)) return {};
-    // A frame without a name is compatible with any frame.
+    // A coordinate frame without a name is compatible with any frame.
     const bool may_be_same = found.frame == expected.frame || found.frame.empty() || expected.frame.empty();
     const bool may_be_turned = found.frame != expected.frame;
     if ((may_be_same && is_in_place(found, expected)) || (may_be_turned && is_in_place(turned_round(found), expected)))

@@ -16,13 +16,13 @@ bool is_inner(const TraceGraph& trace, uint32_t node)
     return trace.internodes_of(node).size() == 2;
 }
 
-/// Walks along a segment, starting at an inner node over one of its two internodes.
+/// Walks along a segment, starting at an inner node via one of its two internodes.
 class Walker {
 public:
     Walker(const TraceGraph& trace, uint32_t node, uint32_t internode)
         : trace_(trace), node_(node), internode_(internode)
     {}
-    /// Advances to the next node. At the end of the segment, this is its last node.
+    /// Advances to the next node; `is_at_end` then tells whether this is the segment's last node.
     void step()
     {
         node_ = trace_.internode(internode_).other(node_);

@@ -51,7 +51,7 @@ void apply(Document& document, const Change& change, Direction direction)
 void apply_if_it_fits(Document& document, std::span<const Change> changes, Direction direction)
 {
     // Selection and settings records are applied without comparing old values, so applying such a record backwards may
-    // not restore the value before. Therefore both are copied here.
+    // not restore the value before. Therefore both are copied first.
     const TraceSelection selection = document.trace.selection();
     const Settings settings = document.settings;
     for (size_t i = 0; i < changes.size(); ++i) {

@@ -20,7 +20,7 @@ public:
     /// A function that reads a record's content from the journal, and fails if that is impossible.
     using Fetch = std::function<std::vector<Change>(RecordNumber)>;
 
-    /// Applies the command and records it; drops commands that were undone. Returns the command (valid until the
+    /// Applies the command and records it; discards commands that were undone. Returns the command (valid until the
     /// history changes), or null without recording if the command has no changes. `record`: its number in the journal.
     const Command* perform(Document& document, Command command, RecordNumber record = 0);
     /// Applies `changes` and adds them to the last command, for instance when a stroke continues. The last command must
@@ -31,7 +31,7 @@ public:
     const Command* undo(Document& document);
     const Command* redo(Document& document);
 
-    /// Replay perform(), extend(), undo() and redo() without applying changes: the document is in its final state.
+    /// Replay perform(), extend(), undo() and redo() without applying changes: the document has its final state now.
     void note(std::string label, RecordNumber record);
     void note_extension(RecordNumber record);
     void note_undo();

@@ -126,7 +126,7 @@ Journal::Journal(const fs::path& path, JournalScan before, std::shared_ptr<const
     records_ = std::move(before.records);
     last_ = records_.size();
     try {
-        // Checked after opening the file: a process that claims the journal from now on finds this file and leaves it.
+        // Checked after opening the file: processes that claim the journal later find this file and do not write it.
         expect_hold(before);
         if (end_ == 0 || end_ < before.file_bytes || !before.head.empty()) begin(free_rest(path), before.head);
         if (!own.empty()) put_in_place(own, before);

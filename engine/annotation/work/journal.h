@@ -32,7 +32,7 @@ public:
     /// Continues the valid prefix that `before` describes. Keeps data after this prefix as JOURNAL.rest1, .rest2 and so
     /// on, and repairs a damaged head. Fails if the file cannot be created or written; fails with JournalTaken if
     /// another process holds it. `hold`: null if no other process knows the journal. `own`: a file with a name that
-    /// only this process uses, which `before` then describes; it replaces any file at `path`, which is renamed.
+    /// only this process uses, which `before` then describes; it moves to `path`, and any file there is renamed first.
     Journal(const std::filesystem::path& path, JournalScan before, std::shared_ptr<const Hold> hold = {},
             const std::filesystem::path& own = {});
     /// Tries to write the queue first.

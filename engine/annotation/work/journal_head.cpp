@@ -73,7 +73,7 @@ Bytes sound_repetition(Bytes begin)
     const std::optional<size_t> at = place_of_repetition(begin);
     if (!at) return {};
     const Bytes front = sound_front(begin.subspan(*at));
-    // At just this place, it must be the repetition of this journal's head, not content that quotes another journal.
+    // At this very place, it must be the repetition of this journal's head, not content that quotes another journal.
     return *at == front.size() + RECORD_HEADER_BYTES ? front : Bytes{};
 }
 
@@ -144,8 +144,8 @@ std::vector<std::byte> repaired_head(std::span<const std::byte> begin, const fs:
         return differing(expected_head(begin, front, true));
     const bool is_like_header = bits_between(begin.first(MAGIC_BYTES), header) <= MAX_DAMAGED_BITS;
     if (!is_like_header || is_newer(begin)) return {};
-    // There is no sound repetition: the journal is older, or the repetition is damaged, too. Then the header is
-    // replaced by the known one and checked against the first record.
+    // There is no sound repetition: the journal is of an older version, or the repetition is damaged, too. Then the
+    // header is replaced by the known one and checked against the first record.
     std::vector<std::byte> front(begin.begin(), begin.end());
     std::ranges::copy(header, front.begin());
     if (const Bytes sound = sound_front(front); !sound.empty()) return differing(expected_head(front, sound, false));

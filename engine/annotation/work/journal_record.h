@@ -27,7 +27,7 @@ struct JournalSubject {
     bool operator==(const JournalSubject&) const = default;
 };
 
-/// Label of the first `saved` record of a work that started empty next to files of earlier work. Those files do not
+/// Label of the first `saved` record if the work was started empty next to files of earlier work. Those files do not
 /// count as saves of the new work.
 inline constexpr char AFRESH[] = "afresh";
 

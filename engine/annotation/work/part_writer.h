@@ -13,8 +13,8 @@
 namespace shvr {
 
 /// `journal`: its name (from `files`) and its last durable record are recorded with the mask; null if there is none.
-/// Returns a sentence if the old image is kept under another name because `foreign` demands it. If `progress` throws,
-/// the file (or image) stays as it was.
+/// Returns a message if, as `foreign` demands, the old image is kept under another name. If `progress` throws, the file
+/// (or image) stays as it was.
 std::string write_part(Part part, const Document& document, const WorkFiles& files,
                        const std::vector<LabelImage::Color>& looks, const Journal* journal, Foreign foreign,
                        const Progress& progress = {});
@@ -22,8 +22,8 @@ std::string write_part(Part part, const Document& document, const WorkFiles& fil
 /// The inode number of a file or folder, by which a new file in its place is recognized; 0 if there is none.
 uint64_t inode_of(const std::filesystem::path& path);
 
-/// Keeps a file of another program that is about to be replaced: the constructor gives it a second name, its `old_of`
-/// name. So the file has a name even if the process ends in between.
+/// Keeps a file of another program that is about to be replaced: the constructor gives it a second name, `old_of`, so
+/// that its content stays in the folder even if the process ends during the replacement.
 class KeptFile {
 public:
     /// Fails if the file can be neither linked nor copied. Does nothing if another process has moved the file.

@@ -20,7 +20,7 @@ struct JournalSpace {
 /// "0.5 0.5 2 um"
 std::string in_words(const JournalSpace& space);
 
-/// Whether two spacings are equal up to rounding, and to nine digits in text.
+/// Whether two spacings are equal up to rounding, which includes rounding to nine digits in a text file.
 bool is_same_spacing(const glm::dvec3& one, const glm::dvec3& other);
 /// Converts a position to position / from * to, and a radius to radius / from.x * to.x; does not affect other changes.
 void respace(Change& change, const glm::dvec3& from, const glm::dvec3& to);

@@ -22,11 +22,11 @@ struct WorkFiles {
     /// A mask in a read-only format, from which the work starts until `mask` has been saved; empty if there is none.
     /// Set by `Work`, which then also gives `mask` another name (saved_mask_path).
     std::filesystem::path mask_to_read{};
-    /// A mask other than `mask` whose header the next save keeps (mask_segments.h): the one saved before under another
-    /// name, one set aside, or one taken into this work. Set by `Work`.
+    /// A mask other than `mask` whose header the next save keeps (mask_segments.h): the mask saved before under another
+    /// name, a file of another program that was renamed, or an imported mask. Set by `Work`.
     std::filesystem::path mask_before{};
     std::string volume_hash{};  ///< Session::volume_hash
-    /// Returns whether `hash` is another hash of the same voxels, for which it may read all voxels. Empty: never.
+    /// Returns whether `hash` is another hash of the same voxels; may read all voxels to find out. Empty: never.
     std::function<bool(const std::string& hash)> is_other_name{};
     VolumeInfo volume{};       ///< the annotated volume
     SettingValues settings{};  ///< the session's settings, as read from its file

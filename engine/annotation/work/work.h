@@ -66,8 +66,8 @@ public:
         Start start = Start::as_left;
         Belief belief = Belief::ask;
         bool only_look = false;  ///< read-only: takes no hold, and accepts no command
-        /// States that the work will be changed at once: a journal that others may still write is then taken from them
-        /// when it is opened, not by the first command. The journal is read again if others write to it meanwhile.
+        /// States that the work will be changed at once: if others may still write the journal, opening takes it from
+        /// them, rather than the first command. The journal is read again if they write to it meanwhile.
         bool takes_over = false;
         std::shared_ptr<Hold> hold{};  ///< a hold of this journal to use; null: opening takes the hold
         std::string program = "shvr";  ///< as in Holder; describes a hold that opening takes
@@ -126,10 +126,10 @@ public:
     /// nothing differs. Reads the state from the journal, so later changes of the files have no effect. Fails, without
     /// any change, if nothing was ever saved or the journal cannot be read.
     const Command* revert();
-    /// Keeps the sections whose values differ. This is not a command and does not make a save necessary. The sections
-    /// are written to the journal if the first command has started it; otherwise, or if the journal cannot be written,
-    /// they stay in memory and are written with the next record. Never fails. Do not pass sections that were set for
-    /// this run only ("key=value").
+    /// Keeps the sections whose values differ from those kept before. This is not a command and does not make a save
+    /// necessary. The sections are written to the journal if the first command has started it; otherwise, or if the
+    /// journal cannot be written, they stay in memory and are written with the next record. Never fails. Do not pass
+    /// sections that were set for this run only ("key=value").
     void keep_settings(const SettingValues& values);
     /// Selects objects, which must exist. The selection is not a step of the history.
     void select_trace(TraceSelection selection) { document_.trace.select(std::move(selection)); }
@@ -158,7 +158,7 @@ public:
     /// Continues the work, with its whole history, under other names, none of which may exist yet. The files under the
     /// old names stay as they are and are released. Writes, each on disk before the next: a copy of the journal, the
     /// mark that a save begins, the files, their digests, and `session`, by `save_session`. A crash before the session
-    /// is written leaves files that nothing refers to; a later crash, a complete project. On failure nothing has
+    /// is written leaves files that nothing refers to; a later crash leaves a complete project. On failure nothing has
     /// changed, and new files are removed. If there is no history yet, the first command creates the new journal.
     Saved save_as(const WorkFiles& to, std::vector<LabelImage::Color> looks, const std::filesystem::path& session = {},
                   const std::function<void()>& save_session = {});
@@ -332,7 +332,7 @@ private:
     std::array<Seen, 3> seen_;
     std::shared_ptr<Journal> journal_;  ///< shared with a save in progress
     size_t unsaved_ = 0;
-    bool misses_files_ = false;      ///< files in the journal are missing; the next save writes them
+    bool misses_files_ = false;      ///< files that the journal lists are missing; the next save writes them
     std::array<bool, 3> touched_{};  ///< since the last save
     bool is_saving_ = false;
     bool is_saving_as_ = false;  ///< `is_saving_` is then true, too

@@ -235,7 +235,7 @@ void Work::open_fresh()
     }
 }
 
-/// Opens work without a journal, or with a journal that has no state. `damage`: the reason for that, if known.
+/// Opens work without a journal, or with a journal that has no state. `damage`: why there is no state, if known.
 std::vector<Notice> Work::open_from_files(const std::string& damage)
 {
     std::vector<Notice> notices;
@@ -379,7 +379,7 @@ void Work::look_at_files(std::vector<Notice>& notices)
             try {
                 known_kept_ = scan_.records[number - 1].about;
                 known_ = saved_files_of(content_of(number));
-            } catch (const Error&) {  // without this record, every file is compared with the work
+            } catch (const Error&) {  // if this record is unreadable, every file is compared with the work
             }
             break;
         }
@@ -443,7 +443,7 @@ void Work::look_at_mask_image(std::vector<Notice>& notices) const
     }
 }
 
-/// Returns the record that begins the save whose end is the record `saved`. The save holds the work as of that record.
+/// Returns the record at which the save that ended with the record `saved` began, and whose state the save holds.
 RecordNumber Work::begin_of_save(const JournalScan& scan, RecordNumber saved)
 {
     for (RecordNumber number = saved - 1; number > 0; --number) {

@@ -6,7 +6,7 @@
 
 namespace shvr {
 
-/// The last save of each part. If a part was taken from a file that others changed, that counts as a save.
+/// The last save of each part. Taking a part from a file that another program changed counts as a save, too.
 Work::LastSave Work::last_save(const JournalScan& scan) const
 {
     LastSave last;
@@ -22,7 +22,7 @@ Work::LastSave Work::last_save(const JournalScan& scan) const
         } catch (const Error&) {
             continue;  // no information
         }
-        // A journal's first record of files lists those that existed then; they may belong to other work.
+        // The journal's first record of files lists files that existed when it began. AFRESH: they are of earlier work.
         const bool is_of_files = record.label != AFRESH && (files.mask || files.trace || files.density);
         for (const Part part : PARTS) {
             RecordNumber& of = last.of[size_t(part)];

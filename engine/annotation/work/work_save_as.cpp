@@ -38,7 +38,7 @@ public:
                 ::unlink(path.c_str());
         }
     }
-    /// To be called before the file is created.
+    /// Call this before the file is created.
     void add(const fs::path& path) { paths_.push_back(path); }
     void keep() { paths_.clear(); }
 

@@ -226,7 +226,7 @@ void Work::Saving::write(Part part, const Progress& progress)
         throw JournalTaken(sentence(file.string(), ": is not saved, since another process has taken the journal ",
                                     files_.journal.string(), " over; expected this process to be its only writer"));
     // A file of another program keeps its name until the new file replaces it: a file gets a second name before that,
-    // and folders exchange names. Only if one of the two is a folder and the other is not, the old one is moved first.
+    // and folders exchange names. If just one of the two is a folder, the old one is moved first.
     const bool is_foreign_now = is_foreign(part);
     const uint64_t inode = inode_of(file);
     std::optional<KeptFile> kept_file;
@@ -239,9 +239,9 @@ void Work::Saving::write(Part part, const Progress& progress)
         else if (!is_folder)
             kept_file.emplace(file);
         note_kept(saved_.notices, part, file, old);
-        if (part == Part::mask) files_.mask_before = old.value_or(file);  // its header is read before it is replaced
+        if (part == Part::mask) files_.mask_before = old.value_or(file);  // the old mask's header is read from here
     }
-    // In the case `kept`, a file may be left from an interrupted save, or from a program that wrote the same content.
+    // For `kept`, the file may be left from an interrupted save, or another program may have written equal content.
     const bool is_last_save = seen.digest && seen.digest == digest_of(known_, part);
     const Foreign foreign = is_foreign_now ? Foreign::replaced : is_last_save ? Foreign::excluded : Foreign::kept;
     try {
@@ -251,7 +251,7 @@ void Work::Saving::write(Part part, const Progress& progress)
         const bool is_untouched = inode != 0 && inode_of(file) == inode;
         if (is_foreign_now && is_untouched) throw;  // it is still the other program's
         if (kept_file) note_kept(saved_.notices, part, file, kept_file->old());
-        // A partial write is this process's own. An untouched file is not read again, which could take long.
+        // A partial write is noted as this process's own. An untouched file is not read again, which could take long.
         if (const std::optional<FileStamp> stamp = stamp_of(file); !stamp || stamp != seen.stamp) note_file(file, seen);
         throw;
     }

@@ -107,7 +107,7 @@ Holder described(const FileDescriptor& file)
     return parse_holder(text);
 }
 
-/// Whether the content is empty or of an ended process on this host, so the present holder has yet to write.
+/// Whether the content is empty or of an ended process on this host: the present holder has not written its own yet.
 bool is_dated(const Holder& holder)
 {
     const std::optional<int64_t> process = whole_of(holder.process);
@@ -319,8 +319,8 @@ bool Hold::claim()
     std::vector<fs::path> claimed;
     for (const fs::path& mark : doubtful_marks_) {
         const fs::path name = revoked(mark);
-        // Either the owner has removed a missing mark, because it closed the journal, or another process has revoked
-        // the mark since it was listed. In the second case the owner may still write.
+        // A mark is missing if its owner has removed it, because it closed the journal, or if another process has
+        // revoked it since it was listed. In the second case the owner may still write.
         const bool is_revoked = name != mark && std::rename(mark.c_str(), name.c_str()) == 0;
         if (!is_revoked && name != mark && errno != ENOENT)
             fail(name.string(), ": cannot be written: ", reason_of(errno));

@@ -33,7 +33,7 @@ Renaming after_failure(const fs::path& from, const fs::path& to, int error)
     fail(to.string(), ": cannot be written, to keep ", from.filename().string(), " there: ", reason_of(error));
 }
 
-/// Reserves `to` with an empty file, then renames over it. For names that no other process moves files from.
+/// Reserves `to` with an empty file, then renames over it. Use only if no other process moves files away from `to`.
 Renaming rename_over_own(const fs::path& from, const fs::path& to)
 {
     const FileDescriptor own(::open(to.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));

@@ -48,7 +48,7 @@ std::string plain_host()
     return host.empty() ? "unnamed" : host;
 }
 
-/// The first part of the boot's name, which is random.
+/// The first part of `boot_name`, which is random.
 std::string plain_boot()
 {
     const std::string boot = boot_name();
