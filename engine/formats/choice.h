@@ -1,5 +1,5 @@
 #pragma once
-// The choices that a file with several volumes offers, for callers that can ask the user to make one.
+// The choices that a file with several volumes offers, for callers that can let the user choose.
 
 #include <string>
 #include <utility>

@@ -115,7 +115,7 @@ std::vector<fs::path> files_of_list(const HeaderFields& fields, const char* fiel
     return files;
 }
 
-/// Returns the number of axes of each file, if the field's last word states it ("2", or "2D" in MetaImage).
+/// Returns how many axes each file covers, if the field's last word states this number ("2", or "2D" in MetaImage).
 int64_t axes_of_a_file(const HeaderFields& fields, const char* field, const std::vector<std::string_view>& words,
                        size_t index)
 {

@@ -18,13 +18,13 @@ bool is_list(std::string_view data_file);
 bool is_pattern(std::string_view data_file);
 
 /// Returns the paths of the files that `field` names, in order. `rest` is the text after the field's line: the names of
-/// a list, one per line. Fails unless the number of files suits `size`. By default, each file holds one slice; the
+/// a list, one per line. Fails unless the number of files fits `size`. By default, each file holds one slice; the
 /// field's last word may state another number of axes per file: 1 (a row) or 3 (several slices).
 std::vector<std::filesystem::path> data_files(const HeaderFields& fields, const char* field, std::string_view rest,
                                               const Size3& size);
 
-/// Returns the index, from 0, of the channel or time point that the options choose among the `count` in `file`. `names`
-/// are those of the channels, if any. Fails, listing the choices, if there are several and none is chosen.
+/// Returns the index, from 0, of the channel or time point of `file` that the options choose out of `count`. `names`:
+/// of the channels, if known. Fails, listing the choices, if there are several and none is chosen.
 int64_t chosen_channel(const std::string& file, const OpenOptions& options, int64_t count,
                        std::span<const char* const> names = {});
 int64_t chosen_frame(const std::string& file, const OpenOptions& options, int64_t count);

@@ -59,7 +59,7 @@ private:
 /// in the header's folder is used instead. `stated` may be a Windows path.
 std::filesystem::path file_stated(const std::filesystem::path& header, const std::string& stated);
 
-/// Sets spacing and unit of `info`, and adds a warning if the file does not state one of them. A spacing without a unit
+/// Sets spacing and unit of `info`, and adds a warning for each that the file does not state. A spacing without a unit
 /// is assumed to be in `usual_unit`, but in voxels if it is 1 1 1.
 void apply_spacing(VolumeInfo& info, const std::optional<glm::dvec3>& spacing, const std::optional<std::string>& unit,
                    const char* usual_unit);

@@ -21,7 +21,7 @@ struct Rescale {
 /// intercept are whole. Otherwise, 8- and 16-bit types and float32 become float32, and larger types become float64.
 VoxelType rescaled_type(VoxelType stored, const Rescale& rescale);
 
-/// Converts `stored` to `intensities`. If `to` is not smaller than `from`, `stored` may be the end of the memory of
+/// Converts `stored` to `intensities`. If `to` is not smaller than `from`, `stored` may lie at the end of the memory of
 /// `intensities`. `to` must be able to hold the results.
 void rescale_voxels(VoxelType from, std::span<const std::byte> stored, const Rescale& rescale, VoxelType to,
                     std::span<std::byte> intensities);

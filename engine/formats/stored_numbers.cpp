@@ -143,7 +143,7 @@ std::optional<uint16_t> half_of(double value)
     if (std::isinf(size)) return uint16_t(sign | INFINITE);
     const int exponent = size > 0.0 ? std::max(std::ilogb(size), -14) : -14;
     if (exponent > 15) return std::nullopt;
-    // A fraction that is rounded up to 2048 carries into the exponent, as the sum below does correctly.
+    // A fraction that is rounded up to 2048 must carry into the exponent: adding, as below, does this.
     const int fraction = int(std::nearbyint(std::ldexp(size, 10 - exponent)));
     const int bits = ((exponent + 14) << 10) + fraction;
     if (bits >= INFINITE) return std::nullopt;

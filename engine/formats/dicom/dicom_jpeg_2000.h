@@ -1,6 +1,6 @@
 #pragma once
-// Decodes JPEG 2000 pictures within a DICOM file (ITU-T T.800) by OpenJPEG directly. GDCM also uses OpenJPEG, but it
-// reads beyond the picture's end if a length says so, and writes out of bounds at an unexpected precision. Any thread.
+// Decodes JPEG 2000 pictures within a DICOM file (ITU-T T.800) by OpenJPEG directly. GDCM also uses OpenJPEG, but reads
+// beyond the picture's end if a stated length says so, and writes out of bounds at an unexpected precision. Any thread.
 
 #include <cstddef>
 #include <cstdint>

@@ -46,7 +46,7 @@ class Walk {
 public:
     explicit Walk(const InputFile& file) : file_(file) {}
 
-    /// `at`: offset of the first element. `states_types`: whether elements state types, if no file meta group tells.
+    /// `at`: offset of the first element. `states_types`: whether elements state types, if there is no file meta group.
     DicomLayout run(int64_t at, bool states_types)
     {
         constexpr Encoding META{true, false};

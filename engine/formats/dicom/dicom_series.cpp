@@ -130,7 +130,7 @@ bool sort_slices(std::vector<Placed>& slices, VolumeInfo& info)
     return are_placed;
 }
 
-/// Removes slices that occur in several copies, which are common in exports.
+/// Removes duplicates of slices, which are common in exports.
 void leave_out_copies(std::vector<Placed>& slices, VolumeInfo& info)
 {
     std::set<std::pair<std::string, size_t>> seen;
@@ -167,7 +167,7 @@ size_t usual_count(const std::vector<std::vector<Placed>>& positions)
         ->first;
 }
 
-/// Takes the first or last slice at each position, as chosen, if a slice was scanned again or is missing somewhere.
+/// If some positions have repeated or missing slices, takes the first or the last slice at each position, as chosen.
 void choose_repeated(const std::string& where, const OpenOptions& options, VolumeInfo& info,
                      const std::vector<std::vector<Placed>>& positions, std::vector<Placed>& slices)
 {

@@ -16,8 +16,8 @@
 namespace shvr {
 namespace {
 
-/// The output file for libtiff's client functions. They are called from C, so no exception may leave
-/// them.
+/// The output file for libtiff's client functions. C code calls these functions, so they must not
+/// throw.
 struct ClientFile {
     AtomicWriter& writer;
     int64_t at = 0, size = 0;

@@ -32,7 +32,7 @@ private:
     bool big_endian_;
 };
 
-/// Field offsets of one NIfTI version. The versions also differ in field types, the parameters of `parse`.
+/// Field offsets of one NIfTI version. The versions also differ in the fields' types, which are parameters of `parse`.
 struct Places {
     size_t dim, datatype, pixdim, voxels_at, slope, intercept, units, qform_code, sform_code, quaternion, qform_origin,
         sform;

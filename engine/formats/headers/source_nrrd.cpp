@@ -107,7 +107,7 @@ RawVoxels::Part place_in(const HeaderFields& fields, const std::filesystem::path
     constexpr int64_t MOST = int64_t{1} << 62;
     const char* const byte_skip = fields.has("byteskip") ? "byteskip" : "byte skip";
     const char* const line_skip = fields.has("lineskip") ? "lineskip" : "line skip";
-    // Byte skip -1 stands for the end of the file, except in compressed data. Lines are skipped before decompression.
+    // Byte skip -1, not allowed with compression, means the file's last bytes. Lines are skipped before decompression.
     const int64_t bytes = fields.whole(byte_skip, 0, deflated ? 0 : -1, MOST);
     if (bytes == RawVoxels::AT_END) return {file, RawVoxels::AT_END};
     const int64_t begin = skip_lines(fields, file, from, fields.whole(line_skip, 0, 0, MOST));

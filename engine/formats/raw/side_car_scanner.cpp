@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view FILE_SECTION = "[file1]", NEXT_FILE_SECTION = "[file2]";
 
-/// Adds lines "name = value" to `fields`: only those inside the section that describes the voxel file if `is_inside` is
-/// true, only those outside of it otherwise. If a field repeats, the first one counts.
+/// Adds lines "name = value" to `fields`: if `is_inside`, those inside the section that describes the voxel file,
+/// otherwise those outside of that section. If a field repeats, the first one counts.
 void add_lines(std::string_view text, bool is_inside, HeaderFields& fields)
 {
     bool is_of_file = false;

@@ -166,8 +166,8 @@ private:
         std::swap(description_.channels, description_.slices);
     }
 
-    /// Turns time points or channels of one slice each into slices. Time points are turned if the choice is "slices"
-    /// or, if nothing was chosen, if there is only one channel. Channels are turned only if the choice is "slices".
+    /// Converts time points or channels of one slice each to slices. Converts time points if the choice is "slices" or,
+    /// if nothing was chosen, if there is only one channel. Converts channels only if the choice is "slices".
     void take_frames_as_slices()
     {
         TiffDescription& description = description_;
@@ -190,7 +190,7 @@ private:
         }
     }
 
-    /// Reorders pages so that time points vary fastest, as slices must, and channels second.
+    /// Reorders pages so that time points, which are to become slices, vary fastest, and channels second.
     void put_frames_first(std::vector<uint32_t>& of_pages) const
     {
         const std::vector<uint32_t> before = of_pages;

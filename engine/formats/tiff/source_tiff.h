@@ -24,7 +24,7 @@ std::unique_ptr<VolumeSource> make_tiff_source(TiffVolume volume, std::unique_pt
 void apply_recipe(TiffVolume& volume, const TiffPage& page, const TiffPixelChannel& channel,
                   const TiffDescription& description);
 
-/// Returns the pages that may be slices: all except smaller copies and masks, or all if there are no others.
+/// Returns the pages that may be slices: all except smaller copies and masks, or all pages if only such pages exist.
 std::vector<uint32_t> pages_to_show(const TiffDirectories& directories);
 
 /// One file, whatever its name.

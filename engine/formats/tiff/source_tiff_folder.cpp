@@ -127,7 +127,7 @@ std::unique_ptr<VolumeSource> open_tiff_folder(const fs::path& path, const OpenO
 {
     std::vector<SliceName> names = slice_names_in(path, extensions_of(SliceFormat::tiff), KIND);
     if (names.empty()) return nullptr;
-    // TIFFs next to more slices of another format are previews, unless there is only one and it has several pages.
+    // TIFFs in a folder with more slices of another format are previews, except a single TIFF with several pages.
     const auto has_one_page = [&] {
         return pages_to_show(read_directories(TiffFile(path / names.front().file))).size() == 1;
     };

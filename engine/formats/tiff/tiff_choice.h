@@ -7,7 +7,7 @@
 
 namespace shvr {
 
-/// One of the values that pixels can yield: one of their samples, or one colour of their palette entry.
+/// One of the values that a pixel can yield: one of its samples, or one colour of its palette entry.
 struct TiffPixelChannel {
     std::string name{};  ///< "" if the channel has only a number
     int sample = 0;
@@ -15,7 +15,7 @@ struct TiffPixelChannel {
     bool is_usual = false;  ///< whether this is the default channel
 };
 
-/// Returns at least one channel; may add to `warnings`. A palette that only displays its indices offers no choice.
+/// Returns at least one channel; may add to `warnings`. A palette that only colours the display yields one channel.
 std::vector<TiffPixelChannel> channels_of_pixel(const TiffPage& page, const TiffLayout& layout,
                                                 const TiffDescription& description, std::vector<std::string>& warnings);
 
@@ -31,7 +31,7 @@ struct TiffChoice {
 /// The choice that turns all channels, or all time points, into the slices of one volume.
 inline constexpr const char* AS_SLICES = "slices";
 /// Returns the choice. Fails, listing the choices, if several exist and none is chosen, or if the chosen one is
-/// missing. `may_be_slices`: whether AS_SLICES is allowed, which is left to the caller to apply.
+/// missing. `may_be_slices`: whether AS_SLICES is allowed, but applying it is left to the caller.
 TiffChoice choose(const std::string& subject, const OpenOptions& options, const std::vector<std::string>& names,
                   int64_t frames, bool may_be_slices = false);
 

@@ -128,7 +128,7 @@ void add_resolution(TiffDescription& description, const Resolution& resolution)
     for (std::string& unit : description.unit) unit = "um";
 }
 
-/// Applies the lines of our own files. Their exact spacing replaces the resolution fields' rounded one if both agree.
+/// Applies our own files' lines. The exact spacing there replaces the resolution fields' rounded one if both agree.
 void take_place(VolumeInfo& info, const TiffDescription::Place& place, const std::string& unit)
 {
     constexpr double TOLERANCE = 1e-5;

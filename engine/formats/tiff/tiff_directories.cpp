@@ -190,7 +190,7 @@ public:
         (field.tag == STRIP_OFFSETS || field.tag == TILE_OFFSETS ? offset_ : bytes_) = value;
     }
 
-    /// Checks the last directory. Returns true if it states more bytes than the file holds, though all pixels fit in.
+    /// Checks the last directory. Returns true if it states too many bytes for the file, but its pixels are all there.
     bool finish(size_t page)
     {
         const bool states_too_many = !file_.holds(offset_, bytes_) && picture_.bytes() < bytes_;

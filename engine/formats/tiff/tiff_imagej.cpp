@@ -132,7 +132,7 @@ TiffDescription read_imagej_description(const std::string& subject, std::string_
     description.channels = std::max<int64_t>(1, lines.count("channels"));
     description.frames = std::max<int64_t>(1, lines.count("frames"));
     description.slices = lines.count("slices");
-    // If the number of slices is missing, it is the number of images per channel and frame.
+    // If the number of slices is missing, it is computed: the number of images per channel and frame.
     if (description.slices == 0) {
         description.slices = std::max<int64_t>(1, images / (description.channels * description.frames));
     }

@@ -30,7 +30,7 @@ constexpr Compression COMPRESSIONS[] = {
     {COMPRESSION_CCITTFAX4, "CCITT group 4", 0, true},
     {COMPRESSION_CCITTRLEW, "CCITT RLE", 0, true},
     {COMPRESSION_LZW, "LZW", 4096, true},                // 9 bits decode to at most 4093 bytes
-    {COMPRESSION_JPEG, "JPEG", 4096, true},              // each of a few scans has at least a bit per 64 samples
+    {COMPRESSION_JPEG, "JPEG", 4096, true},              // each of the few scans takes at least a bit per 64 samples
     {COMPRESSION_ADOBE_DEFLATE, "Deflate", 1032, true},  // 2 bits decode to 258 bytes
     {COMPRESSION_DEFLATE, "Deflate", 1032, true},
     {COMPRESSION_PACKBITS, "PackBits", 64, true},  // 2 bytes decode to at most 128

@@ -49,7 +49,7 @@ std::string in_words(const TiffLayout& layout);
 
 /// Returns the kind of numbers that need conversion: 64-bit integers, whose bits are read as float64; else `plain`.
 StoredNumber stored_number_of(const TiffLayout& layout);
-/// Returns the voxel type that exactly holds the samples or, before conversion, their bits; null if there is none.
+/// Returns the voxel type that holds the samples exactly or, if they need conversion, their raw bits; null if none.
 std::optional<VoxelType> voxel_type_of(const TiffLayout& layout);
 
 /// Fails if the kind of picture or its compression is not supported; the message states the supported ones.

@@ -5,7 +5,7 @@
 namespace shvr {
 namespace {
 
-/// Tables for processing eight bytes at a time: table k is for a byte that k zero bytes follow.
+/// Tables for processing eight bytes at a time: table k is for a byte that is followed by k zero bytes.
 using Tables = std::array<std::array<uint32_t, 256>, 8>;
 
 constexpr Tables make_tables()

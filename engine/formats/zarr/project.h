@@ -44,7 +44,7 @@ struct ProjectTable {
     int level = 0;
     size_t element_bytes = 1;
     Size3 counts{0};
-    /// Elements in native byte order. In a sparse table: first the default, used where no key is, then one per key.
+    /// Elements in native byte order. In a sparse table: first the default, for elements without key; then one per key.
     std::vector<std::byte> elements{};
     bool is_sparse = false;
     std::vector<uint64_t> keys{};  ///< numbers of the elements listed in a sparse table, ascending
@@ -61,7 +61,7 @@ void check_tables(const std::filesystem::path& project, const VolumeInfo& info);
 /// Whether a sparse table with `listed` elements is smaller than a table with every element.
 bool is_smaller_as_list(const ProjectTable& table, size_t listed);
 /// Returns a table in the form to store: dense if that is smaller or if `is_small`, sparse otherwise. So equal content
-/// has equal bytes, and older versions, which lack sparse tables, can read those of all volumes that they could import.
+/// has equal bytes, and older versions, which lack sparse tables, can read the tables of volumes they could import.
 ProjectTable stored_form(ProjectTable sparse, bool is_small);
 std::vector<std::byte> to_bytes(const ProjectTable& table);
 /// Reads the table in `file`, dense or sparse. Fails unless kind, level, counts and element size equal `expected`'s.

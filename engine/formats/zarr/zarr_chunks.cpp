@@ -136,7 +136,7 @@ void ZarrChunks::prepare(std::span<const std::vector<int64_t>> chunks) const
     array_.store->prepare(wants);
 }
 
-/// Prepares the indices of these chunks' shards, except for indices that are cached.
+/// Reads the indices of these chunks' shards ahead, except for indices that are cached.
 void ZarrChunks::prepare_indices(std::span<const std::vector<int64_t>> chunks) const
 {
     const ZarrSharding& sharding = *metadata_.sharding;

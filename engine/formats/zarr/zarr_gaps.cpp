@@ -12,7 +12,7 @@
 namespace shvr {
 namespace {
 
-/// Up to this many chunks are probed instead of listed: it is faster, and enough for most bricks with their apron.
+/// Up to this many chunks, enough for most bricks with their apron, are probed one by one, since listing is slower.
 constexpr int64_t FEW_FILES = 8;
 constexpr size_t MANY_LOOKS = 4096;
 /// Bits of a chunk's number along one axis; numbers are below 2^21.

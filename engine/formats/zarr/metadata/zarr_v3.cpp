@@ -157,7 +157,7 @@ void read_index(const JsonNode& configuration, ZarrSharding& sharding)
     sharding.is_index_first = place.exists() && place.choice(places) == 0;
 }
 
-/// Reads the metadata of shards. Afterwards `chunks` is the shape of the chunks in a shard, which are read singly.
+/// Reads the metadata of shards. Afterwards `chunks` is the shape of the chunks in a shard, which are read one by one.
 void read_sharding(const Chain& outer, ZarrMetadata& metadata)
 {
     const JsonNode configuration = (*outer.bytes)["configuration"];

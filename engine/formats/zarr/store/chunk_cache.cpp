@@ -5,7 +5,7 @@
 namespace shvr {
 namespace {
 
-/// Bytes counted for an entry besides its voxels; they keep entries without voxels (fill value only) from piling up.
+/// Bytes counted for an entry besides its voxels, so that entries without voxels (fill value only) do not pile up.
 constexpr int64_t OVERHEAD_BYTES = 256;
 
 int64_t cost_of(const Block& block)

@@ -23,7 +23,7 @@ public:
 
     explicit PreparedObjects(int64_t budget_bytes) : budget_bytes_(budget_bytes) {}
 
-    /// Announces that this thread will read an object; false if it is there, or another thread announced it.
+    /// Announces that this thread will read an object; false if the object is there or has been announced already.
     bool announce(const Place& place);
     /// Provides an announced object.
     void provide(const Place& place, RemoteObject object);
