@@ -17,7 +17,7 @@ Size3 piece_of(const VolumeSource& source)
     return block == Size3(1) ? Size3(size.x, size.y, 1) : glm::min(block, size);
 }
 
-/// Visits each piece that intersects the box, together with their intersection.
+/// Visits each piece that intersects the box, and its intersection with the box.
 template <class Visit>
 void for_each_piece(const VoxelBox& box, const Size3& piece, const Visit& visit)
 {

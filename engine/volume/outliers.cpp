@@ -151,7 +151,7 @@ public:
     }
 
 private:
-    /// Excludes the innermost value with `is_last(index, voxels up to it)` and all outer values, up to `limit` voxels.
+    /// Excludes all from the outermost to the innermost with `is_last(index, voxels up to it)`; up to `limit` voxels.
     template <class IsLast>
     void exclude_beyond(int64_t limit, const IsLast& is_last)
     {

@@ -86,7 +86,7 @@ VolumeStatistics measure_integers(const Measured& measured)
 
 // ---- Types with too many values to count each -----------------------------------------------------------------------
 
-/// Calls `take(value, count)` for finite values and the number of voxels that have them. Returns the number of others.
+/// Calls `take(value, count)` for each finite value and its number of voxels. Returns the number of other voxels.
 template <class T, class Take>
 int64_t for_each_finite(const Measured& measured, double lower, double upper, const Take& take)
 {
@@ -230,7 +230,7 @@ double voxels_of_level(const VolumeSource& source, int level)
     return double(size.x) * double(size.y) * double(size.z);
 }
 
-/// Returns the stored blocks of a level; null if over `most_voxels`, or if the level is small enough to read whole.
+/// Returns the stored blocks of a level; null if they have over `most_voxels` voxels, or if all voxels are few enough.
 std::optional<StoredBlocks> stored_in(const VolumeSource& source, int level, int64_t most_voxels)
 {
     if (voxels_of_level(source, level) <= double(MAX_VOXELS_MEASURED)) return std::nullopt;

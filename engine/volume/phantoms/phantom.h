@@ -75,7 +75,7 @@ PhantomFlaws usual_flaws(const std::string& kind);
 /// True of kinds to which PhantomSpec::double_tubes applies.
 bool has_double_tubes(const std::string& kind);
 std::vector<std::string> capitulum_species();
-/// Fails with a sentence that names the field if a field of `spec` has a value outside the limits stated above.
+/// Fails with a message that names the field if a field of `spec` has a value outside the limits stated above.
 Phantom make_phantom(const PhantomSpec& spec);
 
 }  // namespace shvr

@@ -13,7 +13,7 @@ namespace shvr {
 /// A scalar field in voxel coordinates (the centre of voxel i is at i + 0.5), in intensity units.
 struct ScalarField {
     std::function<double(glm::dvec3 voxel)> value;
-    /// The derivative d value / d voxel; where it jumps, that of one side. Empty if the field has no useful one
+    /// The derivative d value / d voxel; where it jumps, the derivative on one side. Empty if no derivative is useful
     /// (speckles). For `tubes` it excludes the noise, which is constant within a voxel and jumps at the voxel's faces.
     std::function<glm::dvec3(glm::dvec3 voxel)> gradient;
 };
@@ -50,7 +50,7 @@ struct ProceduralSpec {
 ///                 axis shows, from one voxel up. All parts are sharp, and known (ProceduralTruth).
 std::vector<std::string> procedural_kinds();
 
-/// Fails with a sentence that lists the kinds if `spec.kind` is unknown.
+/// Fails with a message that lists the kinds if `spec.kind` is unknown.
 ScalarField procedural_field(const ProceduralSpec& spec);
 std::unique_ptr<VolumeSource> open_procedural(const ProceduralSpec& spec);
 
