@@ -136,7 +136,7 @@ void AtomicFolder::expect_in_place()
     const bool is_found = ::stat(container_.c_str(), &found) == 0;
     if (is_held && is_found && held.st_dev == found.st_dev && held.st_ino == found.st_ino) return;
     remove_remains();
-    // rmdir() only removes empty folders. These are the folder of labels and the project's folder.
+    // rmdir() removes only empty folders: here IMAGE/labels and the project's folder.
     ::rmdir(target_.parent_path().c_str());
     ::rmdir(target_.parent_path().parent_path().c_str());
     fail(target_.string(),

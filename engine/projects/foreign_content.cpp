@@ -197,7 +197,7 @@ private:
         }
     }
 
-    /// Ignores values that change with every save: the journal's position; without name exchange, the levels' folder.
+    /// Ignores values that every save changes: the journal's position and, without name exchange, the levels' folder.
     void at_values(const SortedJson& old, const SortedJson& now, const std::string& key, const std::string& file)
     {
         if (key == "shvr") return;

@@ -108,7 +108,7 @@ std::string text_of(const Json& document, int indent)
     return document.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-/// Returns signatures of a folder's files, or of a file and those with the same stem (headers may refer to them).
+/// Returns signatures of a folder's files, or of a file and all files with its stem, since headers may refer to them.
 Json signatures_of(const fs::path& origin)
 {
     std::error_code ignored;

@@ -135,8 +135,8 @@ public:
         const double plane = numbers * double(rows_held);
         const double slice = double(size_.x) * double(rows_read) * sizeof(T);
         const double most = std::min(double(slices * factor_), std::max(1.0, double(PLANE_BYTES) / plane));
-        // Adds planes that are spare, since the blur along z has passed them. If values may be non-finite, a plane also
-        // has the blurred fraction of finite values, and the original values.
+        // Also counts spare planes, which the blur along z has passed. If values may be non-finite, a plane also has
+        // the blurred fraction of finite values, and the original values.
         const double planes = most + double(factor_ + 4 * reach(2) + 1);
         const double kinds = std::is_floating_point_v<T> ? 2.0 * plane + slice : plane;
         const auto at_once = double(std::max<int64_t>(1, box_.block().z));

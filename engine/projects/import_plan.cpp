@@ -17,8 +17,8 @@
 namespace shvr {
 namespace {
 
-/// If more than this fraction of the chunks is stored, a dense pass takes no longer. At the same fraction, the hash
-/// changes its kind (content_hash.h).
+/// If more than this fraction of the chunks is stored, a dense pass is as fast as a sparse one. At the same fraction,
+/// the hash changes its kind (content_hash.h).
 constexpr double MAX_SHARE_STORED = 0.125;
 /// Memory per block while chunks are listed.
 constexpr int64_t LISTED_BYTES = 256;

@@ -15,7 +15,7 @@ struct ImportPlan {
     std::optional<StoredChunks> stored{};  ///< the chunks to visit; null: all voxels are visited
 };
 
-/// Chooses the stored chunks only if the source can list them, they are at most an eighth of all chunks, and cropping
+/// Selects only the stored chunks if the source can list them, they are at most an eighth of all chunks, and cropping
 /// is the only preparation. Fails if the import would exceed its memory budget or make tables that are too large.
 ImportPlan plan_import(const VolumeSource& source, const std::filesystem::path& project, const ImportOptions& options);
 

@@ -84,7 +84,7 @@ private:
         return taken;
     }
 
-    /// `below`: the stored chunks of level 0 that the made chunk covers; at least one.
+    /// `below`: the stored chunks of level 0 that the chunk to be made covers; at least one.
     void make(int level, std::span<const Size3> below)
     {
         const Size3 chunk = ancestor(below.front(), level), origin = chunk * IMPORT_CHUNK;

@@ -32,7 +32,7 @@ ImportReport write_label_image(const VolumeSource& labels, const std::filesystem
                                const std::vector<Size3>& chunks, const ImportOptions& options);
 
 /// Like `export_label_image`, but on one thread, at a cost proportional to the number of stored blocks, which the
-/// source must be able to list. Returns a sentence if the old image is kept under another name.
+/// source must be able to list. Returns a message if the old image is kept under another name.
 std::string save_label_image(const VolumeSource& labels, const std::filesystem::path& folder, const LabelImage& image,
                              const ImportOptions& options = {}, Foreign foreign = Foreign::refused);
 

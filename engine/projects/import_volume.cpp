@@ -302,7 +302,7 @@ private:
     WorkPool pool_;  ///< declared last, so that tasks end before other members are destroyed
 };
 
-/// Returns a sentence if unfinished work could not be removed; otherwise an empty text.
+/// Returns a message if unfinished work could not be removed; otherwise an empty text.
 std::string remains_of(const fs::path& part)
 {
     std::error_code error;

@@ -111,7 +111,7 @@ PartFolder::PartFolder(const fs::path& target, bool overwrites)
     refuse_target();
     if (!is_there(part_)) make_folder(part_);
     lock_.emplace(locked(part_));
-    // A folder that only happens to have this name must stay. An import's folder has a state, or only the folder shvr.
+    // A folder that has this name by chance must stay. A folder left by an import has a state, or only the folder shvr.
     if (is_there(state())) return;
     std::error_code error;
     for (const fs::directory_entry& entry : fs::directory_iterator(part_, error)) {
