@@ -41,7 +41,7 @@ struct AnnotationNames {
 /// project. The mask becomes PROJECT/labels/NAME if the project is an OME-Zarr, else NAME.zarr next to the old mask;
 /// offsets become NAME.offsets.zarr. If a name is taken, NAME-2 and so on. Null if nothing is to be renamed.
 std::optional<AnnotationNames> sparse_names(const Session& session, const std::filesystem::path& session_file);
-/// Returns the text of a session file with these names under `annotation`. Otherwise only the layout changes.
+/// Returns the text of a session file with these names under `annotation`. Apart from them, only the layout changes.
 std::string with_names(const std::string& text, const AnnotationNames& names,
                        const std::filesystem::path& session_file);
 

@@ -26,7 +26,7 @@ enum class PictureProbe {
 /// `picture`: path of the picture's file. `project`: the value of "SHVR project" above; may be empty.
 PictureTexts texts_of_picture(Session session, const Camera& camera, const std::filesystem::path& picture,
                               const std::filesystem::path& project, PictureProbe probe);
-/// Whether pictures rendered from that file outline the probe. False for a picture taken in the window.
+/// Whether pictures rendered from this picture file outline the probe. False for a picture taken in the window.
 bool outlines_probe(const std::filesystem::path& picture);
 
 struct PictureSession {

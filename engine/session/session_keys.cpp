@@ -162,7 +162,7 @@ void raw_fields(Fields& f, std::filesystem::path& path, std::optional<RawLayout>
 
 constexpr int MAX_LEVEL = 23;
 
-/// Visits the volume, which has one of three forms: a procedural function, bare voxels, or a file in a known format.
+/// Visits the volume, which has one of three forms: a procedural function, raw voxels, or a file in a known format.
 void volume_fields(Fields& f, Session& session)
 {
     if (f.has("procedural", session.procedural.has_value())) {

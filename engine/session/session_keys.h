@@ -71,7 +71,7 @@ inline const NumberRange INTENSITY{-3.4e38, 3.4e38};
 // session_read.cpp
 JsonDocument session_document(std::string_view text, const std::string& origin);
 Session read_session(const JsonDocument& document, const std::filesystem::path& folder);
-/// Returns a sentence for each key of earlier versions in `document`, which reading ignores (Fields::retired).
+/// Returns a message for each key of earlier versions in `document`, which reading ignores (Fields::retired).
 std::vector<std::string> removed_keys_in(const JsonDocument& document, const std::string& origin);
 CameraSpec read_camera(const JsonNode& node);
 /// Returns the text of a JSON object with these sections.

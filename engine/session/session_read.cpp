@@ -11,7 +11,7 @@
 namespace shvr {
 namespace {
 
-/// Collects the keys that an object may have. Reads a value only if other keys are valid depending on it.
+/// Collects the keys that an object may have. Reads a value only if it decides which other keys are valid.
 class KnownKeys : public Fields {
 public:
     explicit KnownKeys(const JsonNode& node) : node_(node) {}

@@ -1,4 +1,4 @@
-// The table of keys, for README.md and for --set, which finds in it which values are texts.
+// The table of keys, for README.md and for --set, which looks up there which values are texts.
 
 #include <algorithm>
 #include <cmath>

@@ -133,7 +133,7 @@ std::string laid_out(const OrderedJson& value, const std::string& indent, bool m
     return value.is_array() ? "[" + text + "]" : "{" + text + "}";
 }
 
-/// Returns a value for people to read; of points and similar items, only their number.
+/// Formats a value for people to read; for points and similar items, states only their number.
 std::string in_words(const OrderedJson& value)
 {
     if (value.is_number_float()) return sentence(value.get<double>());
