@@ -21,7 +21,7 @@ namespace shvr {
 namespace {
 
 constexpr long CONNECTIONS_TO_HOST = 16, CONNECTIONS = 32;
-/// Interval at which a waiting thread checks whether waits are over.
+/// Interval at which a waiting thread checks `wait_is_over`.
 constexpr std::chrono::milliseconds TICK{20};
 
 class CurlTransport final : public Transport {

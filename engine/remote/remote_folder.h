@@ -1,6 +1,6 @@
 #pragma once
 // Reads objects below an address by HTTP requests, with retries and redirects. Never lists or writes. Any thread may
-// call these; a thread blocks until its own requests are done or waits are over (engine/base/waits/waits.h).
+// call these; a thread blocks until its own requests are done or its wait is ended (engine/base/waits/waits.h).
 //
 // Objects are cached on disk (object_cache.h). A cached object is revalidated by its ETag: if it is unchanged, the
 // server sends no body. If no server answers, the cached object is used, and for half a minute all other cached objects

@@ -156,7 +156,7 @@ S3Place s3_place(const Address& address)
         place.url = url_of(server) + "/" + address.host + address.path;
         return place;
     }
-    // The servers' TLS certificate is for *.SERVER, one label only: a bucket whose name has dots must go into the path.
+    // The servers' TLS certificate is for *.SERVER with one label: a bucket whose name has dots must go into the path.
     const std::string server = "s3." + place.region + ".amazonaws.com";
     const bool has_dots = address.host.find('.') != std::string::npos;
     place.url = has_dots ? "https://" + server + "/" + address.host + address.path

@@ -51,7 +51,7 @@ class Transport {
 public:
     virtual ~Transport() = default;
     /// Sends all requests, in parallel where possible, and waits for the responses. Returns them in the order of the
-    /// requests. Throws `Stopped` when waits are over (engine/base/waits/waits.h).
+    /// requests. Throws `Stopped` if the wait is ended early (engine/base/waits/waits.h).
     virtual std::vector<RemoteResponse> perform(std::span<const RemoteRequest> requests) const = 0;
 };
 
