@@ -64,7 +64,7 @@ std::string groups_in_words(const std::map<uint8_t, int64_t>& voxels)
     return text;
 }
 
-/// Refuses a project that has a mask file: the voxels of its volume are intensities then. `evaluate` needs groups.
+/// Refuses a project that has a mask file: its volume holds intensities, but `evaluate` needs groups.
 void expect_no_annotated_project(const fs::path& path)
 {
     std::error_code ignored;
