@@ -28,7 +28,7 @@ struct StudyTimes {
     double mental = 1.35;   ///< a decision (likewise)
     double view = 4.0;      ///< changing the view: decide, hand to device and back, move (same model: M + 2 H + P)
     double travel = 1.5;    ///< moving to another part of the section, with the force paused
-    double node = 6.4;      ///< finding where to go on before a node; calibrated: segments traced in ten minutes
+    double node = 6.4;      ///< finding the next place before each node; calibrated: segments in ten minutes
     double stroke = 2.5;    ///< pausing before a stroke; calibrated: times of painting in the thesis, section 6.2
     double patience = 2.0;  ///< a tool acts after this time even if the hand has not settled; a guess
 };

@@ -1,7 +1,7 @@
 #pragma once
 // An annotator's workplace without a window: a modelled Touch in a modelled hand, the servo loop at 1 kHz with
-// relevance as late as in a window, the annotation with its undo history, and a clock. Tools act where the product's
-// do: in the middle of the touched object or, without contact, at the probe.
+// relevance as late as in a window, the annotation with its undo history, and a clock. Tools act where the program's
+// tools do: in the middle of the touched object or, without contact, at the probe.
 //
 // `spend` advances the clock without simulating ticks, while the hand rests. Equal seeds give equal bits. One thread.
 

@@ -101,7 +101,7 @@ private:
     template <class Visit>
     void each_visible_place(std::span<const glm::dvec3> course, const Visit& visit) const
     {
-        constexpr double DEPTH = 0.7;  // of the radius, since points exactly on the surface may lie outside the vein
+        constexpr double DEPTH = 0.7;  // fraction of the radius: points exactly on the surface may be outside the vein
         const double radius = DEPTH * scene().vein_radius();
         for (const glm::dvec3& at : course)
             for (const glm::dvec3& out : {view().to_eye, view().right, -view().right, view().up(), -view().up()}) {

@@ -22,7 +22,7 @@ struct StudyRepeat {
 
 /// Returns a CSV file (RFC 4180) with a header. NaN becomes an empty field.
 std::string csv_of(std::span<const StudyRepeat> repeats);
-/// Reads the file that `csv_of` writes. Fails with a sentence that names file, line and column.
+/// Reads the file that `csv_of` writes. Fails with a message that names file, line and column.
 std::vector<StudyRepeat> read_study_repeats(const std::filesystem::path& file);
 
 }  // namespace shvr

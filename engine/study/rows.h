@@ -91,7 +91,7 @@ struct StudyRow {
 /// Returns a CSV file (RFC 4180) with a header: task, touch, law, probe_radii, noise, annotator, seed, then the names
 /// of `outcome_columns()`. NaN becomes an empty field. Numbers have enough digits to be read back as the same bits.
 std::string csv_of(std::span<const StudyRow> rows);
-/// Reads the file that `csv_of` writes. Fails with a sentence that names file, line and column.
+/// Reads the file that `csv_of` writes. Fails with a message that names file, line and column.
 std::vector<StudyRow> read_study_rows(const std::filesystem::path& file);
 
 }  // namespace shvr

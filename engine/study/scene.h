@@ -21,7 +21,7 @@ inline constexpr double STUDY_THRESHOLD = 130.0;
 inline constexpr double MISTAKEN_THRESHOLD = 80.0;
 
 struct Phantom;
-/// The phantom's true trace, in physical units for this voxel spacing. Names are indices of phantom nodes and links.
+/// The phantom's true trace, in physical units for this voxel spacing. Numbers are indices of phantom nodes and links.
 TraceGraph trace_of(const Phantom& phantom, const glm::dvec3& spacing);
 
 struct SceneSpec {

@@ -56,7 +56,7 @@ StudyCondition study_centre(StudyTask task);
 /// for repeatability within and between annotators. `small`: a few of these, on small phantoms. `full`: 30 repeats of
 /// all combinations. A varied probe radius or noise is compared with `none` at the same radius and noise.
 StudyPlan plan_study(const StudyChoice& choice);
-/// Reads conditions from a CSV file with the columns task, touch, law, probe_radii, noise. Fails with a sentence that
+/// Reads conditions from a CSV file with the columns task, touch, law, probe_radii, noise. Fails with a message that
 /// names file, line and column.
 std::vector<StudyCondition> read_study_conditions(const std::filesystem::path& file);
 

@@ -39,7 +39,7 @@ struct StudyLine {
 /// The line of names, with its end.
 std::string study_header(std::span<const std::string_view> names);
 
-/// Calls `take` with each line after the header. Fails with a sentence that names file and line if the header differs
+/// Calls `take` with each line after the header. Fails with a message that names file and line if the header differs
 /// from the expected one, or if a line has the wrong number of fields.
 void read_study_lines(const std::filesystem::path& file, std::span<const std::string_view> names,
                       const std::function<void(const StudyLine&)>& take);

@@ -20,7 +20,7 @@ struct BaselineRow {
 };
 
 /// Columns: method, noise, seed, skipped, and the names of `outcome_columns()`, in any order. An outcome without a
-/// column is NaN. Fails with a sentence that names file, line and column.
+/// column is NaN. Fails with a message that names file, line and column.
 std::vector<BaselineRow> read_baselines(const std::filesystem::path& file);
 
 }  // namespace shvr

@@ -48,7 +48,7 @@ std::vector<MainComparison> comparisons_of(const StudyReport& report, StudyTask 
     return comparisons;
 }
 
-/// Compares the condition without touch that has the best mean main outcome with the central condition, in pairs.
+/// Compares the central condition, in pairs, with that condition without touch whose mean main outcome is best.
 std::string best_free_hand(const StudyReport& report, StudyTask task)
 {
     const Outcome outcome = main_outcome(task);

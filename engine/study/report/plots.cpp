@@ -43,7 +43,7 @@ std::string line_at(double x0, double y0, double x1, double y1, const char* look
                     px(y1), "\"/>\n");
 }
 
-/// Draws the points of one row, each with a vertical offset by its index, so that equal values do not overlap.
+/// Returns the points of one row, each with a vertical offset by its index, so that equal values do not overlap.
 std::string points_of(const PlotLine& line, const Scale& scale, double middle)
 {
     std::string markup;
@@ -108,7 +108,7 @@ std::vector<double> ticks_of(double low, double high, int most)
     while (step < span) step *= 10.0;
     while (step >= span) step /= 10.0;
     step /= 10.0;
-    // 10 to 100 steps cover the span, so with factor 100 one or two steps do: the loop always finds a factor.
+    // 10 to 100 steps cover the span, so with factor 100 one or two suffice: the loop always finds a factor.
     for (const double factor : {1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0}) {
         const double first = std::floor(low / (step * factor)), last = std::ceil(high / (step * factor));
         if (last - first > most - 1 && factor < 100.0) continue;
