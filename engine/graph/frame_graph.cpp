@@ -361,7 +361,7 @@ public:
             uint32_t& last = last_pass_[binding.resource];
             if (!is_shared(binding.resource) || last != pass) continue;
             free_.push_back(binding.resource);
-            last = NEVER;  // a pass may read the resource under two names
+            last = NEVER;  // freed only once, even if a pass reads the resource under two names
         }
     }
 
