@@ -10,7 +10,7 @@ SHARED_CONST uint COUNTER_SAMPLES = 1u;         // density samples taken
 SHARED_CONST uint COUNTER_SHADED = 2u;          // samples with a gradient
 SHARED_CONST uint COUNTER_LEAPS = 3u;           // jumps over empty cells
 SHARED_CONST uint COUNTER_BRICKS_VISITED = 4u;  // bricks in which a ray took a sample, added up over rays and blocks
-SHARED_CONST uint COUNTER_BRICKS_SKIPPED = 5u;  // bricks that a ray crossed without a sample, added up likewise
+SHARED_CONST uint COUNTER_BRICKS_SKIPPED = 5u;  // bricks that a ray crossed without a sample, added up in the same way
 SHARED_CONST uint COUNTER_TERMINATED = 6u;      // rays that ended early
 /// Always counted: rays that stopped before their end, once per dispatch in which this happened. The picture lacks
 /// everything behind the point where a ray stopped.

@@ -1,5 +1,5 @@
-// The voxels that a brush would change, as rays hit them. Positions are in voxels, relative to the box around these
-// voxels, and computed in double on the CPU, so that they stay accurate far from the volume's first corner.
+// Parameters for ray-casting the voxels that a brush would change. Positions are in voxels, relative to the box around
+// these voxels, and computed in double on the CPU, so that they stay accurate far from the volume's first corner.
 #ifndef SHVR_PREVIEW_H
 #define SHVR_PREVIEW_H
 #include "shared.h"

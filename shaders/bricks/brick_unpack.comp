@@ -1,4 +1,4 @@
-// Copies bricks into their slots: one workgroup per slice of a brick's codes; the first groups also copy the cells.
+// Copies bricks into their slots: one workgroup per slice of a brick's codes; the first groups also copy cell ranges.
 // Copy commands would do the same, but some drivers run a dispatch for each slice of each copy.
 // FILTERED: the atlas is made for the device's filter. Otherwise, staged codes have the atlas's own layout.
 // variants: FILTERED

@@ -67,7 +67,7 @@ Density density_at(ivec3 corner, vec3 fraction)
     return d;
 }
 
-// In another row: the codes at the corner's x and at the next x.
+// The codes at the corner's x and at the next x, in the row that is `y` and `z` rows away from the corner.
 vec2 pair_in(const Density d, int y, int z)
 {
     const vec3 codes = codes_of(d.row, y, z);

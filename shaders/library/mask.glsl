@@ -19,7 +19,7 @@ uint mask_slot_of(uvec3 brick)
     return mask_slot_at(brick, places.x) | mask_slot_at(brick, places.y);
 }
 #else
-// An image instead of a buffer: every sample reads it, and lavapipe reads buffers one lane at a time.
+// The table is an image and not a buffer: every sample reads it, and lavapipe reads buffers one lane at a time.
 layout(binding = MASK_TABLE_BINDING, r32ui) uniform readonly uimage3D mask_table;
 
 uint mask_slot_of(uvec3 brick)

@@ -232,7 +232,7 @@ vec2 after_cell(vec2 light, float stretch, float stopped)
     return vec2(light.x * (1.0 - stopped), light.y + light.x * stretch * (1.0 - stopped * (0.5 + BEND_4 * stopped)));
 }
 
-// A ramp at maximum steepness stands for a sharper edge: it is drawn as in cubes of the voxel's shortest side.
+// A ramp at maximum steepness stands for a sharper edge, so it is as steep in space as along the voxel's shortest side.
 float sharpened_for(vec3 slope, float softened, float steepest)
 {
     if (STRETCHED == 0u) return softened;

@@ -75,7 +75,7 @@ uint near_of(const OcclusionGatherParams params, const OcclusionJob job, ivec3 v
     const vec3 slope = (behind - before) / (2.0 * side);
     // A voxel of a coarse brick covers several voxels of this level; this is the offset from that voxel's centre.
     const vec3 beside = vec3(voxel & int((1u << above) - 1u)) + 0.5 - 0.5 * side;
-    // Densities curve within a voxel, so the voxel's mean density differs by this from the density at its centre.
+    // Densities curve within a voxel: the voxel's mean density is the density at its centre plus `bend`.
     const float bend = dot(before + behind - 2.0 * middle, vec3(0.125 / side));
     const float code = middle + dot(slope, beside) + bend;
     // Ignores extremes beyond the neighbours: where neighbours show nothing, cells count as empty and are never read.

@@ -60,7 +60,7 @@ ivec3 texel_of(const OcclusionJob job, ivec3 voxel)
 }
 
 // Returns a bit for each of four voxels in a row: whether visible samples may read the voxel's value because the
-// transfer function shows something between its density and the densities around it. Other reasons are ignored.
+// transfer function shows something between its density and the densities around it. Paint and the like are ignored.
 uint shows_nearby(ivec3 texel)
 {
     vec4 lower = vec4(65535.0), upper = vec4(0.0);

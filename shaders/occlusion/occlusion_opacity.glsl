@@ -40,7 +40,7 @@ float opacity_held(const OcclusionCellsParams params, vec3 centre)
     const bool inside = all(greaterThanEqual(centre, params.lower)) && all(lessThan(centre, params.upper));
     float held = -1.0;
 #ifdef MASKED
-    // Clamped to the box; voxels outside the box are transparent in any case.
+    // The position is clamped to the box; voxels outside the box are transparent in any case.
     const uvec3 painted = min(uvec3(max(centre, 0.0)), BRICK_SIZE * params.brick_counts - 1u);
     const uint slot = mask_slot_of(painted / BRICK_SIZE);
     if (slot != 0u) {

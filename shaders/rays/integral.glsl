@@ -33,7 +33,7 @@ const mat3 GAUSS_UP_TO =
     mat3(vec3(5.0 / 36.0, 2.0 / 9.0 - SQRT_15 / 15.0, 5.0 / 36.0 - SQRT_15 / 30.0),
          vec3(5.0 / 36.0 + SQRT_15 / 24.0, 2.0 / 9.0, 5.0 / 36.0 - SQRT_15 / 24.0),
          vec3(5.0 / 36.0 + SQRT_15 / 30.0, 2.0 / 9.0 + SQRT_15 / 15.0, 5.0 / 36.0));
-const float MIN_THROUGH = 6e-8;   // 1 - opacity at densities just below an opaque density
+const float MIN_THROUGH = 6e-8;   // lower bound of 1 - opacity, for densities just below an opaque density
 const float MIN_PIECE = 0.002;    // reference lengths
 // A piece is halved if the normal turns by more than this, or if light or highlight begins or ends within it.
 const float MIN_COSINE = 0.98;

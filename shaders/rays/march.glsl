@@ -81,7 +81,7 @@ uint steps_to_leave(const RaycastParams params, const Ray ray, vec3 position, co
 #endif
     const vec3 lengths = (bound - position) * ray.inverse;
     const float exit = min(lengths.x, min(lengths.y, lengths.z));
-    // The guard ensures that rays do not leap over a sample on the border because of rounding.
+    // The margin of 0.01 steps ensures that rays do not leap over a sample on the border because of rounding.
     const float steps = exit / params.step - 0.01;
     return 1u + (steps > 0.0 && steps < MAX_LEAP ? uint(steps) : 0u);   // not for NaN
 }
