@@ -34,7 +34,7 @@ enum ForceFlag : uint32_t {
     FORCE_SLOW = 64,         ///< states of the device arrive too rarely: half the stiffness, or none
     FORCE_OUTSIDE = 128,     ///< outside the box in which the device's forces are accurate
     FORCE_LET_GO = 256,      ///< no force, on the user's request
-    FORCE_OFF_OBJECT = 512,  ///< object following: the probe left its object; after a moment it touches another
+    FORCE_OFF_OBJECT = 512,  ///< object following: the probe left its object, and may soon touch another
 };
 
 /// A pulse against the hand's motion as it touches something, half a sine wave: a hand perceives the onset of contact
@@ -98,7 +98,7 @@ struct ForceStep {
     double relevant_share = 0.0;
     uint32_t flags = 0;
     uint32_t sequence = 0;   ///< number to write with the force
-    double made_j = 0.0;     ///< energy that the observer found to be generated and that damping has not removed yet
+    double made_j = 0.0;     ///< generated energy, found by the observer, that damping has not removed yet
     uint32_t objects = 0;    ///< number of objects touched so far, in object following
     double latency_s = 0.0;  ///< measured; 0 if the device does not report force numbers
 };
@@ -111,7 +111,7 @@ inline constexpr uint64_t ENGAGE_NS = 1'000'000'000;          ///< for devices w
 inline constexpr uint64_t ENGAGE_SIMULATED_NS = 100'000'000;  ///< for the mouse
 inline constexpr double ENGAGE_BELOW_N = 0.2;                 ///< a device engages only while the force is below
                                                               ///< this, as in CHAI3D: no device starts with a jerk
-inline constexpr uint64_t SILENCE_NS = 20'000'000;            ///< a device silent for that long counts as absent
+inline constexpr uint64_t SILENCE_NS = 20'000'000;            ///< a device that is silent for this long is absent
 inline constexpr double GLITCH_M = 0.005;                     ///< a hand moves less than this in one tick
 inline constexpr int GLITCHES_TO_ACCEPT = 3;                  ///< number of states in a row at a new position after
                                                               ///< which the device counts as moved

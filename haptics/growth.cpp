@@ -224,7 +224,7 @@ void forget_object(GrowthMemory& memory) noexcept
 const RelevancePatch& advance_object(const RelevancePatch& patch, const glm::dvec3& centre, double radius,
                                      GrowthMemory& memory) noexcept
 {
-    // If a newer patch replaced that of a new contact before growth began, drops the contact; the next tick retries.
+    // If a newer patch replaced a new contact's patch before growth began, drops the contact; the next tick retries.
     if (memory.is_growing && !memory.has_mask && patch.sequence != memory.seen_sequence)
         memory.is_growing = memory.is_new_contact = false;
     const bool is_new = patch.sequence != 0 && patch.sequence != memory.seen_sequence && patch.is_well_formed();

@@ -28,8 +28,8 @@ struct GrowthList {
 
 /// Empties `grown` and moves it to the position of `mask`.
 void begin_growth(const RelevancePatch& mask, RelevancePatch& grown, GrowthList& list) noexcept;
-/// Seeds `grown` with the voxels of `object` that are set in `mask`. Patches of different levels share only voxels
-/// whose centres lie in the ball. Returns the number of words that contain seeds.
+/// Seeds `grown` with the voxels of `object` that are set in `mask`. If the levels of these patches differ, seeds only
+/// voxels whose centres lie in the ball. Returns the number of words that contain seeds.
 uint32_t seed_from_object(const RelevancePatch& object, const RelevancePatch& mask, const glm::dvec3& centre,
                           double radius, RelevancePatch& grown, GrowthList& list) noexcept;
 /// Seeds with the voxel of `mask` in the ball that is nearest to the ball's centre. Returns false if there is none.

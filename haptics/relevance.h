@@ -33,7 +33,7 @@ struct RelevancePatch {
     glm::ivec3 volume_size{0};  ///< voxels of its level
     int32_t level = 0;          ///< a voxel of level l spans 2^l of the volume's along each axis; coarse levels are for
                                 ///< large probes
-    uint32_t settings = 0;      ///< the ForceSettings::relevance_settings used; others make the patch unusable
+    uint32_t settings = 0;      ///< ForceSettings::relevance_settings used; if it changes, the patch is unusable
     uint32_t limits = 0;        ///< counts changes of excluded voxels (cuts, hidden groups), which cross-fade the pull
     std::array<uint32_t, MAX_WORDS> words{};  ///< index of a word: word + words_per_row * (y + size.y * z)
 

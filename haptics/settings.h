@@ -29,14 +29,14 @@ struct ForceSettings {
     uint32_t reset = 0;  ///< a change clears a latched fault
     TouchMode mode = TouchMode::proximity;
     glm::dvec3 to_camera{0.0, 0.0, 1.0};  ///< unit vector in the volume; motion along it releases a surface
-    double surface_share = 0.4;           ///< fraction of the ball: a surface holds above it and lets go below 3/4 of
-                                          ///< it
+    double surface_share = 0.4;           ///< share of the ball from which a surface holds the probe; below 3/4 of it,
+                                          ///< it lets go
     double movement_scale = 1.0;          ///< user's scale of the hand's motion; the force is divided by it
     double strength = 1.0;                ///< factor of the force, 0 ... 1
     bool clicks = false;                  ///< a short pulse when contact begins; only for devices with motors
     bool let_go = false;                  ///< no force from the next tick on; when unset, the force fades in again
     bool finds_middle = false;            ///< tools act at the middle of the touched structure; no effect on the force
-    uint32_t relevance_settings = 0;      ///< counts changes of threshold and groups; forces of outdated relevance fade
+    uint32_t relevance_settings = 0;      ///< counts changes of threshold and groups; forces from older relevance fade
     bool operator==(const ForceSettings&) const = default;
 };
 

@@ -29,7 +29,7 @@ struct DeviceListing {
 struct DeviceOptions {
     std::vector<HidProfile> profiles;
     bool allow_force = false;
-    Inverse3Options inverse3;        ///< its `allow_force` is ignored in favour of the one above
+    Inverse3Options inverse3;        ///< its `allow_force` is replaced by the member above
     OpenHapticsOptions openhaptics;  ///< its `allow_force` is ignored as well
 };
 
