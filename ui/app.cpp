@@ -220,7 +220,7 @@ bool App::something_moves() const
 double App::next_reason_to_draw_s() const
 {
     if (undrawable_since_s_) return 0.0;
-    // Until the first picture exists, the interface is drawn rarely, to leave the device's time to that picture.
+    // Until the first picture exists, the interface is drawn rarely, so that the device is free to draw the picture.
     const bool waits_for_picture =
         bench_->is_open() && !bench_->document().screen.shows_anything() && viewport_.pixels().x > 0;
     if (waits_for_picture && !report_.has_unanswered()) return report_.last_begun_s() + SHARPEN_S;
@@ -251,7 +251,7 @@ bool is_overtaken(const std::vector<InputEvent>& events, const InputEvent& event
 
 }  // namespace
 
-/// Dear ImGui answers for the previous frame. So without a held button or a popup, looks up the window at the pointer.
+/// Dear ImGui answers for the previous frame. Unless a button is held or a popup is open, looks up the window instead.
 bool App::ui_has_mouse(const InputEvent& event) const
 {
     const ImGuiIO& io = ImGui::GetIO();

@@ -13,7 +13,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// Requests the characters of all names given by the user. Derived texts, such as history entries, contain no others.
+/// Requests the characters of all names given by the user. Derived texts, such as history entries, add no characters.
 void want_glyphs_of(const Model& model)
 {
     want_glyphs(model.volume.name);

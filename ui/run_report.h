@@ -18,8 +18,8 @@ struct AppReport {
     std::string gpu_name;
     uint64_t frames = 0;           ///< number of frames of the user interface
     std::vector<double> frame_ms;  ///< durations of interface frames, from the first call until the device has finished
-    /// frame_ms without the wait for running work on a software device. `own_idle_ms` holds the frames drawn while no
-    /// picture refines, `own_busy_ms` the frames drawn while one does.
+    /// frame_ms without the wait for running work on a software device. `own_idle_ms`: frames drawn while no picture is
+    /// being refined; `own_busy_ms`: frames drawn while a picture is being refined.
     std::vector<double> own_idle_ms, own_busy_ms;
     std::vector<double> interval_ms;  ///< time between two frames while something was moving
     std::vector<double> input_ms;     ///< time from a press until the frame with its effect is finished

@@ -260,8 +260,8 @@ VkSwapchainKHR Swapchain::retire()
     return old.swapchain;
 }
 
-/// Frees swapchains whose frames have been drawn by the device and taken by the screen. Vulkan reveals that a frame was
-/// taken only by returning an image that was shown later. While a window's edge is dragged, every frame has its own
+/// Frees swapchains whose frames have been drawn by the device and taken by the screen. A frame is known to be taken
+/// only once Vulkan returns an image that was shown later. While a window's edge is dragged, every frame has its own
 /// swapchain, which never gets an image back. Only the last of these are kept: an older one is freed once the device
 /// has finished a later submission, or all submissions.
 void Swapchain::free_retired()

@@ -13,7 +13,7 @@
 
 namespace shvr::ui {
 
-/// Patience of callers that want a fast answer in the same frame of the window.
+/// Maximum wait of callers that want a fast answer in the same frame of the window.
 inline constexpr std::chrono::milliseconds AT_ONCE{20};
 
 template <class Answer>

@@ -9,7 +9,7 @@ namespace shvr::ui {
 namespace {
 
 constexpr int FRAMES_TO_ANSWER = 2;
-constexpr int PATIENCE_FRAMES = 7;  ///< frames after which to give up: a field behind a dialog never gets the keyboard
+constexpr int PATIENCE_FRAMES = 7;  ///< frames until a request ends: a field behind a dialog never gets the keyboard
 int awaited_in_frame = -1;          ///< last frame in which a field awaited the keyboard
 
 }  // namespace

@@ -341,7 +341,7 @@ std::string reading_of(const Model& model)
     return in_words(model.reading, model.volume, group > 0 ? group_of(model.session.groups, group).name : "");
 }
 
-/// Lists what is hidden in the picture, so that the user knows why it is missing.
+/// Lists the parts that are hidden in the picture, so that the user knows why they are missing.
 std::string hidden_in_words(const Model& model)
 {
     const ViewSettings& view = model.session.view;

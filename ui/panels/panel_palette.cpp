@@ -25,7 +25,7 @@ struct Palette {
     int chosen = 0;
     int shown_frame = -1;      ///< the last frame in which the box was drawn
     bool takes_keys = true;    ///< the search box gets the keyboard in the next frame
-    bool ends_at_end = false;  ///< the cursor is also put behind the text in the next frame
+    bool ends_at_end = false;  ///< in the next frame, the cursor is also put behind the text
 };
 Palette palette;
 

@@ -168,7 +168,7 @@ void preview(const Model& model, Actions& actions)
         ImGui::Text("%lld voxels would change", static_cast<long long>(*model.previewed_voxels));
 }
 
-/// Selects the voxels that the brush leaves unchanged.
+/// Draws the choice of voxels that the brush leaves unchanged.
 bool spared(BrushSettings& brush)
 {
     label("Paints");

@@ -161,7 +161,7 @@ void buttons(const Model& model, Actions& actions)
     ImGui::EndDisabled();
 }
 
-/// Selects whether the internodes of the selected group taper from node to node or have a radius of their own.
+/// Draws the choice whether the selected group's internodes taper from node to node or have a radius of their own.
 void tapering(const Model& model, Actions& actions)
 {
     if (model.trace.internodes().empty() || model.brush().group == 0) return;

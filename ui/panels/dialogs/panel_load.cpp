@@ -91,7 +91,7 @@ SpacingDialog correcting;
 
 bool spacing_fields(glm::dvec3& spacing, std::string& unit)
 {
-    // Edited in double precision, so that 0.1 is stored as typed.
+    // The spacing is edited in double precision, so that 0.1 is stored as typed.
     glm::dvec3 sides = spacing;
     bool is_changed =
         ImGui::InputScalarN("size of a voxel: x, y, z", ImGuiDataType_Double, &sides.x, 3, nullptr, nullptr, "%.15g");

@@ -39,7 +39,7 @@ void shown(const Model& model, Actions& actions)
     if (is_other) set(actions, model, [&](Session& s) { s.view = view; });
 }
 
-/// Selects the marks drawn over the picture. Screenshots contain them if so chosen in the File menu.
+/// Draws the choice of marks to draw over the picture. The File menu selects whether screenshots contain these marks.
 void marks(const Model& model, Actions& actions)
 {
     InteractionSettings interaction = model.session.interaction;

@@ -80,7 +80,7 @@ void finer(const Model& model, Actions& actions)
     ImGui::TreePop();
 }
 
-/// Selects the groups that can be felt: all groups, or the ticked ones.
+/// Draws the choice of groups that can be felt: all groups, or the ticked groups.
 void groups(const Model& model, Actions& actions)
 {
     const std::vector<uint8_t>& felt = model.session.probe.touch.groups;
