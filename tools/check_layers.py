@@ -157,7 +157,7 @@ THIRD_PARTIES = {
     "doctest": (r"doctest", r"tests/"),
 }
 
-# Folders whose results have equal bits on every machine. The last bits of these functions depend on the processor,
+# Folders whose results have equal bits on every machine. The last bits of the functions below depend on the processor,
 # unlike those of square roots and rounding. engine/volume/procedural/turns.h has a sine and a cosine to use instead.
 EQUAL_BITS = ["engine/volume/phantoms", "engine/volume/procedural"]
 UNEQUAL_BITS = re.compile(

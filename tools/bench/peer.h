@@ -31,7 +31,7 @@ std::vector<PeerRun> peer_runs(const PeerOptions& options, bool quick);
 /// Returns whether runs of this family were drawn by the comparison program.
 bool is_peer(const std::string& family);
 
-/// Returns the reason why VTK cannot draw the same picture, to end a sentence with; null if VTK can.
+/// Returns the reason why VTK cannot draw the same picture, worded as the end of a sentence; null if VTK can.
 std::optional<std::string> why_not_by_peer(const Session& session, const VolumeSource& source, const Camera& camera,
                                            const std::string& mapper);
 

@@ -85,7 +85,7 @@ Measured measured_of(const Json& json)
     return run;
 }
 
-/// The parts of two files that a comparison looks at.
+/// The parts of two files that are compared with each other.
 struct Looked {
     size_t a_rounds = 0, b_rounds = 0;
     bool at_work = false, at_times = false;

@@ -63,7 +63,7 @@ std::filesystem::path in_tree(const std::filesystem::path& path)
     return std::filesystem::exists(found, unknown) ? found : std::filesystem::path();
 }
 
-/// Returns the present commit of that source tree. The program itself may be older, if files have changed since.
+/// Returns the present commit of the source tree. The program may be older, if files have changed since it was built.
 std::string commit_of_tree()
 {
     const std::filesystem::path folder = in_tree(".git");

@@ -90,7 +90,7 @@ private:
 };
 
 std::string last_what;
-std::unique_ptr<Shown> shown;  ///< that of the running LongWork; null if it is quiet
+std::unique_ptr<Shown> shown;  ///< progress line of the running LongWork; null if the work is quiet
 
 }  // namespace
 

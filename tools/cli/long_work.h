@@ -1,6 +1,6 @@
 #pragma once
-// Shared by commands with long work: shows progress (engine/base/progress.h), and makes Ctrl-C end the command with a
-// sentence.
+// Shared by commands with long work: shows progress (engine/base/progress.h), and makes Ctrl-C stop the command
+// cleanly, with a message.
 
 #include <atomic>
 #include <cstdint>

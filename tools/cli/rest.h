@@ -7,7 +7,7 @@
 
 namespace shvr::cli {
 
-/// Sleeps in some iterations of such a loop: without sleep, it would occupy cores that a software device draws with.
+/// Sleeps in some iterations of a loop: a loop without sleep would occupy cores that a software device draws with.
 inline void rest(uint64_t turn)
 {
     constexpr uint64_t TURNS_AT_ONCE = 8;  // sleeps rarely, so that work that never waits is not slowed down

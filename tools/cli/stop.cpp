@@ -32,7 +32,7 @@ bool has_deadline()
 
 constexpr int HANDLED[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
 
-/// Prints a sentence, unless standard error is a full pipe: writing would block, and the process must end.
+/// Prints a message, unless standard error is a full pipe: writing would block, and the process must end.
 void say(const char* text)
 {
     pollfd standard_error{.fd = STDERR_FILENO, .events = POLLOUT, .revents = 0};

@@ -1,6 +1,6 @@
 #pragma once
-// Ctrl-C, SIGTERM and SIGHUP (the terminal was closed) end every command with a sentence. SIGPIPE (the reader of the
-// output is gone) ends it at once, without a sentence. No file is left half written. During long work (long_work.h), a
+// Ctrl-C, SIGTERM and SIGHUP (the terminal was closed) end every command with a message. SIGPIPE (the reader of the
+// output is gone) ends it at once, without a message. No file is left half written. During long work (long_work.h), a
 // command ends at the work's next step, with exit status 1; otherwise it ends at once, by the signal. Nothing is lost
 // either way, since files appear completely or not at all.
 
@@ -12,7 +12,7 @@ namespace shvr::cli {
 /// that number, and would be used as standard input or output. Call this before anything opens a file.
 void open_standard_streams();
 
-/// Installs signal handlers that end the program with a sentence. Call before any command runs.
+/// Installs signal handlers that print a message and end the program. Call before any command runs.
 void end_in_words();
 
 /// During its lifetime, the first signal only requests that the command end; a second Ctrl-C ends the program at once.

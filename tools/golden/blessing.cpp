@@ -143,7 +143,7 @@ std::optional<std::string> why_other_work(const Golden& golden, const Drawn& dra
             differing +=
                 sentence(differing.empty() ? "" : ", ", name, " ", value, " (recorded: ", recorded->dump(), ")");
     }
-    // Checked on every machine, since a counter without a recorded value detects nothing.
+    // The counters are checked on every machine, since a counter without a recorded value detects nothing.
     if (!missing.empty())
         return sentence(golden.side_car().string(), ": work lacks ", missing,
                         "; expected every counter of the picture, as ", bless_command(golden), " records them");

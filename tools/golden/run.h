@@ -31,7 +31,7 @@ constexpr bool is_failure(Status status)
     return status != Status::passed && status != Status::informative;
 }
 
-/// Returns whether `shvr golden bless` may help: not if drawing failed, nor on a device that may not bless.
+/// Returns whether `shvr golden bless` may help: false if drawing failed, or on a device that may not bless.
 constexpr bool can_be_blessed(Status status)
 {
     return status == Status::failed || status == Status::missing;

@@ -29,7 +29,7 @@ std::optional<Timing> timing_in(const Json& spreads, const char* key, size_t rep
     return timing_of(times, "", replays, file);
 }
 
-/// Compares two times. If only one of them exists, for example because only one action painted, that is the change.
+/// Compares two times. If only one of them exists (for example, only one action painted), reports this as the change.
 Json compared(const char* words, const std::optional<Timing>& a, const std::optional<Timing>& b)
 {
     Json row = compared_times(words, a, b);

@@ -60,7 +60,7 @@ constexpr std::pair<const char*, std::optional<double> ProfiledAction::*> TIMES_
     {"sketch_ms", &ProfiledAction::sketch_ms},
     {"sharp_ms", &ProfiledAction::sharp_ms}};
 
-/// Summarises an action over all replays, for those of its times that every replay has.
+/// Summarises an action over all replays, using only the kinds of times that every replay has.
 Json over_replays(const SessionProfile& profile, size_t index)
 {
     Json spreads = Json::object();

@@ -15,7 +15,7 @@ namespace shvr::cli {
 struct TemporaryFolder {
     std::filesystem::path path;
 
-    /// Creates a folder with a unique name that begins with `begins_with`, in the system's temporary folder. Or fails.
+    /// Creates a folder with a unique name that begins with `begins_with`, in the system's temporary folder. May fail.
     explicit TemporaryFolder(const std::string& begins_with)
     {
         std::string name = (std::filesystem::temp_directory_path() / (begins_with + "-XXXXXX")).string();
