@@ -35,7 +35,7 @@ StackedLayout layout_for(const gpu::DeviceTraits& traits, const VolumeInfo& info
 {
     const uint64_t useful = useful_slots(info, levels), most = bytes / BrickAtlas::slot_bytes(codes);
     const uint64_t least = std::min(useful, PagedVolume::MIN_SLOTS);
-    // Since layouts round up, a layout for fewer slots may hold more, or exist where one for more slots does not.
+    // Layouts are rounded up, so a layout for fewer slots may hold more, or exist where none for more slots exists.
     for (uint64_t slots = std::min(useful, most); slots >= least; --slots)
         if (const std::optional<StackedLayout> layout = stacked_layout(slots, codes, traits))
             if (layout->count() <= most) return *layout;

@@ -8,10 +8,10 @@
 //
 // Bits stay valid until the user changes the threshold or voxels, so the thread renews their time stamp in each
 // iteration. Limits of what can be felt (felt_limits.h) are applied to a copy of the bits, again whenever the limits
-// change, so moving a cut needs no new answer. Limits by intensity need bits made by the host. When the ball comes near
-// the cube's border, will cross it before an answer arrives (region_wish.h), or something changed, wanted() names a new
-// cube for the device's compute pass. The latency of answers is measured. The thread reads the voxels itself, which
-// gives the same bits (relevance_host.h), if no answer came within DEVICE_NS (four times that while the held bits
+// change, so moving a cut needs no new answer. Limits by intensity need bits made by the host. wanted() names a new
+// cube for the device's compute pass if something changed, or if the ball is near the cube's border or will cross it
+// before an answer arrives (region_wish.h). The latency is measured. The thread reads the voxels itself, which gives
+// the same bits (relevance_host.h), if no answer came within DEVICE_NS (four times that while the held bits
 // suffice), if the cube is of a coarser level, or if the device declined.
 //
 // Any thread may call choose(), wanted(), offer(), decline() and trouble(). Only this object's thread calls `Ends`.

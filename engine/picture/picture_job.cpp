@@ -347,7 +347,7 @@ void PictureJob::catch_up()
     finish(part, take(std::move(last)));
 }
 
-/// Draws a part with all bricks that its rays visit, or splits the part. Returns false if the next step continues it.
+/// Draws a part with all bricks that its rays visit, or splits the part. Returns false if the next step must go on.
 bool PictureJob::draw_completely(const PicturePart& part, bool waits)
 {
     DeviceVolume& volume = scene().volume();

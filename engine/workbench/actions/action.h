@@ -55,7 +55,7 @@ inline constexpr size_t INDEX_OF_KIND<Kind, std::tuple<Rows...>> = [] {
 }();
 
 /// Holds one of the structs in the tables; copies share it. Not a std::variant, whose type would put every struct's
-/// name into every symbol: a file that creates one action compiled 8 s longer, to 35 MB more object code (g++ 12, -O2).
+/// name into every symbol: a file that creates one action took 8 s longer to compile, to 35 MB more object code.
 class Action {
 public:
     template <class Kind>

@@ -162,7 +162,7 @@ struct Document {
     /// Commands are refused until the save has ended. `path`: the new session's. Fails if such a file exists.
     std::shared_ptr<Saving> begin_save_as(const std::filesystem::path& path);
     /// Returns a function that writes the current mask, offsets, trace and session to new files, on any thread, and
-    /// returns the session's path. `path`: that path; empty: an unused name next to this session. Fails if it exists.
+    /// returns the new session's path. `path`: the path to use; empty: an unused name nearby. Fails if the file exists.
     std::function<std::filesystem::path()> copier(const std::filesystem::path& path = {}) const;
 
 private:
