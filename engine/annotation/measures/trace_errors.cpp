@@ -77,8 +77,8 @@ bool TraceErrors::note_superfluous(size_t segment)
     return true;
 }
 
-/// Returns whether the trace needs a segment: no other segment follows the same truth for at least half of its length,
-/// or it joins other segments that follow the same segment of the truth.
+/// Returns whether the trace needs a segment: for at least half of its length, no other segment follows the same part
+/// of the truth, or it joins other segments that follow the same segment of the truth.
 bool TraceErrors::is_needed(size_t segment) const
 {
     double alone = 0.0;

@@ -61,8 +61,8 @@ struct TraceComparison {
     /// the trace also follows. The shared part is longer than the surroundings of the two segments' ends or, if both
     /// join the same two nodes, at least half of what the shorter segment follows.
     int64_t doubled = 0;
-    /// Ends of the trace that are not joined at a traced branch of the truth, but are near the branch, on the way to it
-    /// with nothing traced in between, or paired with it while another segment passes it.
+    /// Ends of the trace that should be joined at a traced branch of the truth, but are not: ends near the branch, ends
+    /// on the way to it with nothing traced in between, and ends paired with it although another segment passes it.
     int64_t gaps = 0;
     /// Places along a segment of the truth between two traced parts that are not joined to each other. For a partly
     /// traced ring, one more place is counted.

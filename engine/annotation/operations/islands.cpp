@@ -73,7 +73,7 @@ int64_t fewest_voxels(const IslandsOp& op, const VolumeInfo& volume)
              "; expected a unit of length (--spacing, --unit), or voxels instead");
     const glm::dvec3 side = volume.spacing * (*micrometres / 1000.0);
     const double voxels = *op.mm3 / (side.x * side.y * side.z);
-    // Tolerates the rounding of the quotient, so that a part of exactly this volume stays.
+    // Tolerates the rounding of the quotient, so that a part of exactly `mm3` stays.
     return int64_t(std::min(std::ceil(voxels * (1.0 - 1e-12)), 9e18));
 }
 

@@ -1,5 +1,5 @@
-// Trace to mask. The volume is bisected down to single bricks, and each half is searched only for the shapes that reach
-// into it. So the cost depends on the bricks that the trace meets, and only one brick is in memory at a time.
+// Trace to mask. The volume is bisected down to single bricks, and each half is tested only against the shapes that
+// reach into it. So the cost depends on the bricks that the trace meets, and only one brick is in memory at a time.
 
 #include <algorithm>
 #include <numeric>

@@ -73,7 +73,7 @@ constexpr std::span<const Spelling<FillBetweenOp::Axis>> spellings_of(FillBetwee
 }
 
 /// Operations by distance, in the unit of the volume's spacing, measured exactly between centres of voxels; a voxel at
-/// just this distance is included. Positions beyond the volume's border belong neither to the group nor to its outside.
+/// exactly the limit is included. Positions beyond the volume's border belong neither to the group nor to its outside.
 struct GrowOp {  ///< gives the group all voxels within the distance
     int64_t group = 1;
     double distance = 0.0;
@@ -291,7 +291,7 @@ inline const OperationRow& row_of(const GroupOperation& operation)
     return OPERATION_ROWS[operation.index()];
 }
 
-/// Visits the keys of an operation: its own, then those of its limits if it has limits.
+/// Visits the keys of an operation: the operation's own keys, then the keys of its limits, if any.
 template <class Fields, class Kind>
 void operation_fields(Fields& f, Kind& op)
 {

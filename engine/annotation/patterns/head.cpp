@@ -22,7 +22,7 @@ std::vector<uint32_t> florets_of(const VeinGraph& graph, const HeadFrame& frame)
 }
 
 /// Fits the height by least squares as a polynomial in 1, rho^2 and, with 20 florets or more, rho^4. Null if there are
-/// too few florets, or if they lie on a narrow ring, since these do not determine the surface.
+/// too few florets, or if they lie on a narrow ring, since such florets do not determine the surface.
 std::optional<Receptacle> receptacle_of(const Head& head)
 {
     Receptacle surface{.rho_least = 2.0};

@@ -76,7 +76,7 @@ struct AxisEquations {
     glm::dvec4 right{0.0};
     double length = 0.0, squares = 0.0;
 
-    /// Adds a vein, after eliminating the unknown rotation of its plane around the axis.
+    /// Adds the equations of a vein, after eliminating the unknown rotation of the vein's plane around the axis.
     void add(const VeinCourse& course, const AxialCourse& made)
     {
         const glm::dvec2 n = made.normal, in_plane(-n.y, n.x);

@@ -22,7 +22,7 @@ double azimuth(const glm::dvec3& place)
     return std::atan2(place.y, place.x);
 }
 
-/// Returns each floret's nearest neighbours further out: one on each side, where there is one.
+/// Returns, for each floret, the nearest neighbour further from the axis on either side, if there is one.
 std::vector<FloretPair> pairs_of(const std::vector<glm::dvec3>& places)
 {
     const size_t count = places.size();

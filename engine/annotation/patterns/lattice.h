@@ -15,7 +15,7 @@ namespace shvr {
 
 inline constexpr double TURN = 6.283185307179586;
 
-/// A floret and its nearest neighbour further out on one side.
+/// A floret and its nearest neighbour further from the axis on one side.
 struct FloretPair {
     uint32_t inner, outer;
     double azimuth;  ///< radians from `inner` to `outer`, -pi ... pi

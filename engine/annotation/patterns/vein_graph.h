@@ -14,7 +14,7 @@ struct VeinNode {
     glm::dvec3 at;
     HeadPart part;  ///< part of its group
 };
-/// An internode. Its part is that of its group; if the group has none, the part that both of its nodes have.
+/// An internode. `part`: the part of its group or, if the group has none, the part of its two nodes if they agree.
 struct VeinLink {
     uint32_t a, b;  ///< indices of nodes
     HeadPart part;

@@ -12,7 +12,7 @@ int64_t wall_clock_ms();
 /// ISO 8601 with milliseconds: "2026-11-29T01:33:25.120Z". Years from 0 to 9999; other times are clamped.
 std::string utc_text(int64_t time_ms);
 
-/// Adds the key "time" to a line of a script or log; readers of both accept and ignore it.
+/// Adds the key "time" to a line of a script or log; readers of scripts and logs accept and ignore this key.
 std::string with_time(std::string line, int64_t time_ms);
 
 }  // namespace shvr

@@ -24,7 +24,7 @@ struct LineGraph {
 
     std::vector<Vertex> vertices{};
 
-    /// Lines that contain each edge once: first those at ends or branches, then separate loops; sorted by first vertex.
+    /// Lines that contain each edge once: first lines at ends or branches, then separate loops; sorted by first vertex.
     std::vector<Line> lines() const;
     double length_of(const Line& line) const;
     /// Removes spurs, shortest first, until none is left: lines from a branch to a loose end whose length plus radius

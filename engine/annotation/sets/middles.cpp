@@ -8,7 +8,7 @@ namespace shvr {
 
 namespace {
 
-/// Calls `visit(at)` for the voxels below a place along an axis, then for those above, each while it returns true.
+/// Calls `visit(at)` for the voxels below a place along an axis, then for those above, each until it returns false.
 template <class Visit>
 void go_both_ways(int64_t place, int64_t size, const Visit& visit)
 {

@@ -1,8 +1,8 @@
 #pragma once
 // Exact thinning of a set of voxels to lines of the same topology. Voxels of the set are connected over faces, edges
 // and corners (26), other voxels over faces (6). Only simple points are removed, one at a time: around a simple point,
-// the set's voxels form one part, and the other voxels at its faces are in one part of its 18 neighbours over faces and
-// edges (Bertrand and Malandain 1994). Layers of growing distance from the outside go first (Pudney 1998), each in
+// the set's voxels are connected, and the other voxels at its faces are connected within its 18 neighbours over faces
+// and edges (Bertrand and Malandain 1994). Layers of growing distance from the outside go first (Pudney 1998), each in
 // turns of six directions (Palagyi and Kuba 1998), so lines end up in the middle. Voxels with one neighbour stay.
 //
 // The order depends only on the set. One thread. Takes four times 4 KiB per brick, and up to 16 bytes per voxel of a

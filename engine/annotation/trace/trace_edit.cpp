@@ -30,7 +30,7 @@ const TraceSelection& selected(const TraceGraph& trace)
     return trace.selection();
 }
 
-/// Puts a record that deselects before the changes, and one that selects after them.
+/// Puts one record before the changes, which clears the selection, and one after the changes, which sets it.
 std::vector<TraceChange> with_selection(const TraceGraph& trace, std::vector<TraceChange> changes,
                                         TraceSelection selection)
 {

@@ -3,7 +3,7 @@
 // the records of the edit (none if nothing would change), without changing the trace. Edits that add objects select
 // them, so that tracing continues from there; undo restores the earlier selection.
 //
-// An impossible edit fails with a sentence, such as "nothing is selected; expected a node". Any thread may call
+// An impossible edit fails with a message, such as "nothing is selected; expected a node". Any thread may call
 // these.
 
 #include <bitset>

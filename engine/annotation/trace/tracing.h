@@ -93,7 +93,7 @@ public:
     /// The number that the next node (or internode) will get; larger than any number used so far.
     uint64_t next_node() const { return next_node_; }
     uint64_t next_internode() const { return next_internode_; }
-    /// Reserves all numbers below these. Files state them, because deleted objects may have had the highest numbers.
+    /// Reserves all numbers below these. Files state the two numbers, because deleted objects may have had higher ones.
     void reserve_numbers(uint64_t next_node, uint64_t next_internode);
 
     /// The node nearest to a position; in a tie, the node with the smallest number; null if there are no nodes.

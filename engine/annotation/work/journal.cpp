@@ -173,7 +173,7 @@ void Journal::remove_new() noexcept
         else
             static_cast<void>(put_at_free(*moved, path_));
     } catch (const Error&) {
-        // The file stays, empty. If the moved file was another process's, that process puts it back from its new name.
+        // This process's empty file stays. If another process's file was moved, its owner moves it back to the path.
     }
 }
 

@@ -60,8 +60,8 @@ std::vector<Change> traces_between(const TraceGraph& from, const TraceGraph& to)
     differences(from.nodes(), to.nodes(), lost_nodes, nodes);
     differences(from.internodes(), to.internodes(), lost_links, links);
     differences(from.internode_radii(), to.internode_radii(), lost_sizes, sizes);
-    // An internode that gets other nodes is removed, then added again. All removals precede all additions, because two
-    // nodes can be joined only once.
+    // An internode that is to join other nodes is removed, then added again. All removals precede all additions,
+    // because two nodes can be joined only once.
     std::vector<TraceInternodeChange> joins;
     for (TraceInternodeChange& link : links) {
         if (link.before && (link.before->a != link.after->a || link.before->b != link.after->b)) {
@@ -81,7 +81,7 @@ std::vector<Change> traces_between(const TraceGraph& from, const TraceGraph& to)
     add(lost_sizes);
     add(sizes);
     if (changes.empty()) return changes;
-    // Deselects first, so that the selection refers to no missing object, neither forwards nor backwards.
+    // Deselects first, so that the selection never refers to a missing object, neither on redo nor on undo.
     changes.insert(changes.begin(), TraceChange(TraceSelectionChange{from.selection(), {}}));
     return changes;
 }

@@ -81,8 +81,8 @@ public:
 
     /// Decisions to be made; empty: none.
     const std::vector<Dispute>& disputes() const { return disputes_; }
-    /// Resolves all disputes, in favour of the files (applying their differences as one command) or of the journal as
-    /// it is. Returns messages about the choice, and the command, which is valid until the history changes.
+    /// `choose` resolves all disputes, in favour of the files (applying their differences as one command) or of the
+    /// journal as it is. Returns messages about the choice, and the command, which is valid until the history changes.
     struct Choice {
         std::vector<Notice> notices;
         const Command* command = nullptr;
@@ -134,11 +134,11 @@ public:
     /// Selects objects, which must exist. The selection is not a step of the history.
     void select_trace(TraceSelection selection) { document_.trace.select(std::move(selection)); }
 
-    /// Writes the files, each atomically, and records the save in the journal. `looks`: the groups' colours and names
-    /// for a label image. Trace and offsets are written only if they have changed or are missing. A file with content
-    /// that the journal lacks is renamed first and kept. Fails if a file cannot be written (a retry may succeed), or if
-    /// a part has content but no file name. `save_session` writes the session's file, which then holds `settings()` and
-    /// `kept_settings()`.
+    /// `save` writes the files, each atomically, and records the save in the journal. `looks`: the groups' colours and
+    /// names for a label image. Trace and offsets are written only if they have changed or are missing. A file with
+    /// content that the journal lacks is renamed first and kept. Fails if a file cannot be written (a retry may
+    /// succeed), or if a part has content but no file name. `save_session` writes the session's file, which then holds
+    /// `settings()` and `kept_settings()`.
     struct Saved {
         std::vector<std::filesystem::path> files;
         std::vector<Notice> notices;
