@@ -57,8 +57,8 @@ struct DicomFile {
 std::optional<DicomFile> read_dicom_file(const std::filesystem::path& path);
 
 /// Returns the pixels of one frame, x fastest, in native byte order; `bytes` is their expected size. Uncompressed
-/// pixels are copied from the file. Compressed pixels are decoded by GDCM or OpenJPEG, which get to see no other part
-/// of the file.
+/// pixels are copied from the file. Compressed pixels are decoded by GDCM or OpenJPEG, which get no other part of the
+/// file.
 std::vector<std::byte> read_dicom_pixels(const DicomFile& file, size_t frame, size_t bytes);
 
 }  // namespace shvr

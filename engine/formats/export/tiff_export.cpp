@@ -144,7 +144,7 @@ void export_tiff(const std::filesystem::path& path, const VolumeSource& source)
     const Size3& size = info.size;
     const auto voxel_bytes = int64_t(bytes_of(info.type));
     AtomicWriter file(path);
-    // The choice between TIFF and BigTIFF must be made before the compressed size is known, so it uses the raw size.
+    // The choice between TIFF and BigTIFF must be made before the compressed size is known, so the raw size decides.
     TiffWriter writer(path, file, size.x * size.y * voxel_bytes > (int64_t{1} << 31) / size.z);
     const int64_t step = export_rows(info);
     const std::string description = description_of(info);

@@ -66,7 +66,7 @@ std::optional<std::string> element(std::string_view xml, const std::string& tag)
     return text;
 }
 
-/// Reads Dragonfly's XML into fields with the names that both formats share.
+/// Reads Dragonfly's XML into fields that have the names of the text format's fields.
 HeaderFields dragonfly_fields(const fs::path& path, std::string_view xml)
 {
     HeaderFields fields(path);

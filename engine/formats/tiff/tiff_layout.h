@@ -55,7 +55,7 @@ std::optional<VoxelType> voxel_type_of(const TiffLayout& layout);
 /// Fails if the kind of picture or its compression is not supported; the message states the supported ones.
 void check_is_supported(const TiffPage& page, const TiffLayout& layout);
 
-/// The position of a block in the file. Fails if it is outside the file, or too short for the block.
+/// The position of a block in the file. extent_of_block() fails if it is outside the file, or too short for the block.
 struct TiffExtent {
     int64_t offset = 0;
     int64_t bytes = 0;

@@ -29,8 +29,8 @@ public:
     void provide(const Place& place, RemoteObject object);
     /// Withdraws the announcement of an object that could not be read.
     void withdraw(const Place& place);
-    /// Removes and returns an object, after waiting for it if it was announced; null if it was not. Throws `Stopped` if
-    /// waiting is cancelled.
+    /// Removes and returns an object; if it is announced but not there yet, waits for it first. Null if it was not
+    /// announced. Throws `Stopped` if waiting is cancelled.
     std::optional<RemoteObject> take(const Place& place);
 
 private:
