@@ -79,7 +79,7 @@ std::string content_hash(const VolumeSource& source);
 /// Computes the hash of the given kind. Returns null if more than 2^38 bytes would have to be read.
 std::optional<std::string> content_hash(const VolumeSource& source, HashKind kind);
 /// Whether two hashes are of the same voxels; `known` is the hash of `source`. If `stated` is of the other kind, reads
-/// the source to compute that kind; if `source` is null, the result is then false.
+/// the source to compute a hash of that kind, or returns false if `source` is null.
 bool is_same_content(const std::string& stated, const std::string& known, const VolumeSource* source);
 
 /// Forwards to another source, which must outlive this object, and hashes the voxels of level 0 that pass through

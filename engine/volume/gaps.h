@@ -38,9 +38,9 @@ private:
     std::string first_reason_;
 };
 
-/// Reads a box of level 0 into `voxels`, and calls the callback with every readable part: the whole box if possible,
-/// otherwise blocks of the file (slices if it has no blocks). Adds unreadable parts to `gaps`; without `gaps`, throws
-/// the first error. `Stopped` always propagates.
+/// read_parts() reads a box of level 0 into `voxels`, and calls `take` with every readable part: the whole box if
+/// possible, otherwise blocks of the file (slices if it has no blocks). Adds unreadable parts to `gaps`; without
+/// `gaps`, throws the first error. `Stopped` always propagates.
 using TakePart = std::function<void(const VoxelBox& part, std::span<const std::byte> voxels)>;
 void read_parts(const VolumeSource& source, const VoxelBox& box, std::span<std::byte> voxels, Gaps* gaps,
                 const TakePart& take);

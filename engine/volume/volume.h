@@ -125,7 +125,7 @@ struct IntensityWindow {
     bool operator==(const IntensityWindow&) const = default;
 };
 
-/// Returns the window of all values, or of range() if outliers would leave the others less than a fifth of the codes
+/// Returns the window of all values, or of range() if outliers would leave other values less than a fifth of the codes
 /// and not every integer has its own code. For partly measured 16-bit integers: the whole range of their type.
 IntensityWindow window_for(VoxelType type, const VolumeStatistics& statistics);
 IntensityWindow window_for(VoxelType type, double minimum, double maximum);
