@@ -83,7 +83,7 @@ void check_all_tables(const std::filesystem::path& project, const VolumeInfo& in
 ImportPlan plan_import(const VolumeSource& source, const std::filesystem::path& project, const ImportOptions& options)
 {
     PreparationOptions preparation = options.preparation;
-    preparation.reverse = false;  // leaves out reversal here, since measuring it requires a pass over all voxels
+    preparation.reverse = false;  // leaves out reversal here, since its range requires a pass over all voxels
     const std::unique_ptr<Preparation> prepared = make_preparation(source, preparation);
     const VolumeInfo& info = prepared->info();
     static_cast<void>(voxel_count(info));

@@ -45,9 +45,9 @@ public:
     /// Describes the result: its size, spacing and origin.
     const VolumeInfo& info() const { return info_; }
 
-    /// Returns voxels of the result, x fastest: rows `lower_row` to `upper_row` (all rows if memory allows) of slices
-    /// `lower` to `upper`. Fastest if slices are requested once, in order, and with the same rows. Only the thread that
-    /// owns the pool may call this.
+    /// `read` returns voxels of the result, x fastest: rows `lower_row` to `upper_row` (all rows if memory allows) of
+    /// slices `lower` to `upper`. Fastest if slices are requested once, in order, and with the same rows. Only the
+    /// thread that owns the pool may call this.
     struct Slab {
         int64_t lower = 0, upper = 0;          ///< z
         int64_t lower_row = 0, upper_row = 0;  ///< y

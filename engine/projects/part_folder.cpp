@@ -165,7 +165,7 @@ void PartFolder::finish()
     sync();
     refuse_target();  // checks again, since the target may have appeared meanwhile
     if (is_there(target_) && !is_empty_folder(target_)) {
-        // Exchanges the two names atomically, so that at every moment one of the projects is in place.
+        // Exchanges the two names atomically, so that either the old or the new project is in place at every moment.
         if (::renameat2(AT_FDCWD, part_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0) {
             refuse_write(target_, errno);
         }

@@ -34,9 +34,9 @@ class ImportPyramid {
 public:
     virtual ~ImportPyramid() = default;
 
-    /// Adds the chunk whose first voxel is at `origin`, with `extent` voxels inside the volume; rows and slices lie
-    /// `row_bytes` and `slice_bytes` apart. Returns all its 64^3 voxels, with the fill value outside the volume, valid
-    /// until the next call with the same `worker`. Different workers may add different chunks at the same time.
+    /// `add` adds the chunk whose first voxel is at `origin`, with `extent` voxels inside the volume; rows and slices
+    /// lie `row_bytes` and `slice_bytes` apart. Returns all its 64^3 voxels, with the fill value outside the volume,
+    /// valid until the next call with the same `worker`. Different workers may add different chunks at the same time.
     struct Chunk {
         Size3 origin{0};
         Size3 extent{0};

@@ -45,7 +45,7 @@ struct BrickPart {
 
 namespace ranges {
 
-/// A brick, with the voxels next to it, meets a cube from `begin` to `end` along one axis, in voxels of the cube.
+/// A cube's part along one axis, `begin` to `end`, that lies in a brick or next to it; in voxels of the cube.
 struct Segment {
     int64_t brick, begin, end;
 };
