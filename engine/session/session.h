@@ -131,7 +131,7 @@ struct ProbeSettings {
 /// Maximum number of surfaces in one session file.
 inline constexpr size_t MAX_SESSION_SURFACES = 100'000;
 
-/// A distance that the user measured between two points. Points are in voxels, so that it follows the spacing.
+/// A distance that the user measured between two points, in voxels, so that it changes with the spacing.
 struct Measurement {
     glm::dvec3 from{0.0}, to{0.0};
     bool operator==(const Measurement&) const = default;
@@ -176,12 +176,12 @@ struct Session {
     Groups shown_groups() const;
 };
 
-/// `path`: a session file (.json), a project folder (whose shvr/session.json is opened), a picture
-/// made by this program (picture_session.h) or a volume file. A volume file, and a session without
-/// a transfer function, gets one from the volume's statistics, which `warnings` mention.
-/// `settings`: "key=value" with dotted keys ("render.step_voxels=0.25"), applied to the JSON before
-/// it is read. Relative paths in a session file are relative to the file. Session files have at
-/// most 16 MiB.
+/// open_session() opens `path`: a session file (.json), a project folder (whose shvr/session.json is
+/// opened), a picture made by this program (picture_session.h) or a volume file. A volume file, and a
+/// session without a transfer function, gets one from the volume's statistics, which `warnings` mention.
+/// `settings`: "key=value" with dotted keys ("render.step_voxels=0.25"), applied to the JSON before it
+/// is read. Relative paths in a session file are relative to the file. Session files have at most 16
+/// MiB.
 struct OpenedSession {
     Session session;
     std::shared_ptr<const VolumeSource> source;

@@ -14,7 +14,7 @@ namespace shvr {
 std::string patch_between(const Session& before, const Session& after);
 /// Returns the patch for a setting spelled as for --set: "light.ambient=0.4".
 std::string patch_of(const std::string& setting);
-/// Applies a merge patch to a JSON object. Fails if one of them is no object; messages call the patch `origin`.
+/// Applies a merge patch to a JSON object. Fails if either text is no JSON object; messages call the patch `origin`.
 std::string merged(std::string_view object, std::string_view patch, const std::string& origin);
 /// Returns the session with the patch applied. Fails on unknown keys and on values out of range, with key, value and
 /// expected values. A preset of a transfer function stays a name, for `transfer_function_of`.
