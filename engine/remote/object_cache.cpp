@@ -137,7 +137,7 @@ std::vector<KeptFile> files_in(const fs::path& folder)
 }  // namespace
 
 ObjectCache::ObjectCache(fs::path folder, int64_t budget_bytes)
-    // Starts with a full budget of unchecked bytes, so that the first `keep` measures what other processes have stored.
+    // Counts a full budget as unchecked, so that the first `keep` measures what other processes have stored.
     : folder_(std::move(folder)), budget_bytes_(folder_.empty() ? 0 : budget_bytes), unchecked_bytes_(budget_bytes)
 {}
 
