@@ -145,7 +145,7 @@ void StudyScene::note_bits()
     for (size_t i = 0; i < visible.size(); ++i) surface_[i] = visible[i] >= 4;
 }
 
-/// Finds the pieces of the full mask outside the partial one, and the centres of their slices along the longest axis.
+/// Finds the pieces of the full mask outside the partial mask, and the centres of their slices along the longest axis.
 void StudyScene::note_separate_bundles()
 {
     const Size3 size = this->size();

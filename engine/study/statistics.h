@@ -45,7 +45,7 @@ double quantile_of(std::span<const double> sorted, double share);
 /// Returns the values of an outcome under one condition, without NaN, in the order of the rows.
 std::vector<double> values_of(std::span<const StudyRow> rows, const StudyCondition& condition, Outcome outcome);
 
-/// `condition` minus `base`, in each pair: annotator and seed with a value under both conditions.
+/// The difference `condition` - `base` in each pair: the same annotator and seed, with a value under both conditions.
 struct PairedDifference {
     Summary before, after;  ///< summaries of `base` and of `condition`, in these pairs only
     Summary difference;
