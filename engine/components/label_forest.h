@@ -53,7 +53,7 @@ public:
     /// Number of voxels in the runs that got this label.
     int64_t& voxels(uint32_t label) { return counts_[label / BLOCK]->at(label % BLOCK); }
 
-    /// Appends another forest. Returns the number that was added to its labels.
+    /// Appends another forest. Returns the offset that was added to the labels of `other`.
     uint64_t append(LabelForest&& other)
     {
         const uint64_t base = blocks_.size() * uint64_t{BLOCK};
