@@ -16,7 +16,7 @@ SHARED_CONST uint LEAP_DISTANCE_SHIFT = 25u;
 /// Maximum distance searched: a leap of 15 cells crosses 60 voxels.
 SHARED_CONST uint LEAP_LIMIT = 15u;
 
-/// Tolerance, in codes, by which a sample may exceed its cell's range. It makes pictures with and without skipping
+/// Tolerance, in codes, by which a sample may exceed its cell's range. With it, pictures with and without skipping are
 /// equal, bit for bit. Exact sampling is a few ulp off; a device's filter may be off by a code.
 SHARED_CONST float GUARD_EXACT = 0.02f;
 SHARED_CONST float GUARD_FILTERED = 1.5f;

@@ -23,7 +23,7 @@ SHARED_CONST float OUT_OF_REACH = 1e30f;
 /// From texel `points` on, the table has the function's `point_count` points for integral.comp, sorted by density:
 /// first a texel each with colour and opacity of a reference length, then a texel each with the density in codes.
 
-/// The specialization constant SHININESS_SQUARINGS is log2 of the shininess if this is an integer below the constant.
+/// The constant SHININESS_SQUARINGS of kernels is log2 of the shininess, or this value if that is not a small integer.
 SHARED_CONST uint NOT_A_POWER_OF_TWO = 10u;
 
 /// Values of the specialization constant SHELL: no iso-surface, or the shape of the region that shows it.

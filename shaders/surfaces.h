@@ -23,7 +23,7 @@ struct Surface {
 /// by node `skip`. Stored as three texels of four words.
 struct SurfaceNode {
     vec3 lower;
-    uint skip;  ///< index of the next node that is not inside this node
+    uint skip;  ///< index of the next node that is outside this node's subtree
     vec3 upper;
     uint begin;  ///< range of a leaf's surfaces; begin == end in other nodes
     uint end;

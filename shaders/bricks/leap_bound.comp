@@ -1,4 +1,4 @@
-// Updates a leap grid after cells have changed: limits the leaps of the cells around them to the nearest changed cell,
+// Updates a leap grid after cells have changed: limits the leaps of the surrounding cells to the nearest changed cell,
 // as if all changed cells were occupied. Leaps may become shorter than necessary, but never too long.
 #version 460
 #extension GL_GOOGLE_include_directive : require

@@ -36,8 +36,8 @@ void main()
 {
     const uvec3 cell = params.cell_begin + gl_GlobalInvocationID;
     if (any(greaterThanEqual(cell, params.cell_end))) return;
-    // Samples between these voxels' centres and the preceding ones lie in up to eight cells, and a sample assigned to a
-    // neighbouring voxel may lie in any of the surrounding cells.
+    // The samples between the centres of these voxels and of the preceding voxels lie in up to eight cells, and a
+    // sample assigned to a neighbouring voxel may lie in any of the surrounding cells.
     const bool is_empty = imageLoad(leap, ivec3(cell)).x >> LEAP_DISTANCE_SHIFT > 1u;
     bool is_painted = false;
     [[unroll]] for (uint i = 0u; i < 8u && !is_empty; ++i) {

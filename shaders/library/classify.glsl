@@ -88,7 +88,7 @@ Opaque opaque_interval(const RaycastParams params, uint number)
     return Opaque(imageLoad(table, table_texel(at)), imageLoad(table, table_texel(at + 1u)));
 }
 
-// The interval that a density reaches first between `front` and `back`; an unreachable interval if there is none.
+// The opaque interval that a density reaches first between `front` and `back`; an unreachable interval if none.
 Opaque opaque_ahead(const RaycastParams params, float front, float back)
 {
     const float at = clamp((front - params.table_lower) * params.opaque_scale, 0.0, float(OPAQUE_ENTRIES - 1u));

@@ -3,7 +3,7 @@
 // Maximum step number; a leap can be added to it without overflow.
 const float MAX_STEPS = 2147483648.0;
 
-// A ray's steps: whole steps of equal length, then the rest: a shorter and thus more transparent step.
+// A ray's steps: whole steps of equal length, then the rest, which is a shorter and thus more transparent step.
 struct Lattice {
     float begin, end;    // lengths along the ray
     uint whole;          // number of whole steps, which is also the index of the rest

@@ -57,8 +57,8 @@ Place place_at(const RaycastParams params, vec3 position)
     return place;
 }
 
-// Reports to the host that a ray visited this place, since visits decide which bricks are loaded. Only the first visit
-// is written; later rays just read, because writes to one word are serialized.
+// Tells the host that a ray visited this place; visits determine which bricks are loaded. Only the first visit is
+// written; later rays just read, because writes to one word are serialized.
 void note_reached(const Place place)
 {
     const uint bit = 1u << (place.entry & 31u);

@@ -9,7 +9,7 @@
 // Maximum iterations; lanes that have found nothing by then take a sample like the other lanes.
 const uint MAX_SEARCH_TURNS = 20u;
 // Whether the sample at `position` may show anything. A painted sample may, regardless of its density. So may every
-// step classified by the densities at its ends, since the density at its middle does not bound these.
+// step that is classified by the densities at its ends, which the density at its middle does not bound.
 bool may_be_seen(const RaycastParams params, vec3 position, const Place place)
 {
     if (PREINTEGRATED != 0u) return true;
@@ -28,8 +28,8 @@ const uint NEAR = 1u;
 const uint ASKED_IN_TURN = 2u;
 
 // The bits of the samples from step `i` on; the lowest bit is that of step `i`. Positions are in fixed point (leap.h),
-// which is much cheaper: the axes are scaled so that the lowest bits of x, y and z are next to each other, as in a
-// bit's index.
+// which is much cheaper: with the axes scaled, the lowest bits of x, y and z lie next to each other and form the bit's
+// index.
 uint bits_ahead(const RaycastParams params, const Ray ray, float begin, uint i)
 {
     const vec3 parts = vec3(SAMPLE_BIT_PARTS, SAMPLE_BIT_PARTS << 2, SAMPLE_BIT_PARTS << 4);

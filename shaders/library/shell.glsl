@@ -9,8 +9,8 @@
 // loop are carried through it, since lanes that leave the loop early lose all other variables.
 #include "voxel_code.glsl"
 
-// A tolerance in reference lengths. A piece of the ray shorter than this belongs to the neighbouring cell; a thinner
-// shell is ignored. Far along a ray, the tolerance is at least two ulps, so that every search advances.
+// A tolerance in reference lengths. A piece of the ray shorter than the tolerance belongs to the neighbouring cell; a
+// thinner shell is ignored. Far along a ray, the tolerance is at least two ulps, so that every search advances.
 float hair_at(float s)
 {
     const float HAIR = 1e-3, TWO_ULPS = 2.384185791015625e-7;

@@ -9,8 +9,8 @@ struct Texels {
     uint slot;
 };
 
-// Cell and fraction are computed from the global position; only the integer part is moved into the brick. A bricked
-// volume thus gives the same bits as a volume in a single texture. Without a brick, the values read are unused.
+// Cell and fraction are computed from the global position; only the integer part is moved into the brick. So a bricked
+// volume gives the same bits as a volume in a single texture. Without a brick, the values read are unused.
 Texels texels_at(vec3 position, const Place place)
 {
     Texels texels;

@@ -23,7 +23,7 @@ layout(binding = 4, r32ui) uniform readonly uimage3D near;
 layout(binding = 5, r32ui) uniform readonly uimage3D around_2;
 layout(binding = 6, r32ui) uniform readonly uimage3D around_4;
 #else
-// Outside the volume, reads return 0 (robustImageAccess), which is an empty cell.
+// Reads outside the volume return 0 (robustImageAccess), which stands for an empty cell.
 layout(binding = 5, r32ui) uniform readonly uimage3D cells_2;
 layout(binding = 6, r32ui) uniform readonly uimage3D cells_4;
 #define around_2 cells_2
@@ -58,7 +58,7 @@ const float MARGIN_4 = 0.853;
 const float WALL_4 = 8.2;
 // How much the opacity of a cell of 4^3 voxels is concentrated at the start of the stretch.
 const float BEND_4 = 0.08;
-// Ramps are softened with distance, because a ray also represents the directions around it.
+// Ramps are softened with distance, because a ray also stands for the directions around it.
 const float SOFT_NEAR[] = {1.25, 0.874, 0.734}, SOFT_2[] = {0.751, 0.59, 0.527, 0.5, 0.45};
 const float STEEPEST_OF_VOXELS = 3.3, STEEPEST_OF_CELLS = 2.6;   // occlusion_ramp.glsl
 
@@ -267,7 +267,7 @@ float left_of_2(const Block block, vec3 place, float softened)
                      STEEPEST_OF_CELLS);
 }
 
-// The weights of the opacities along a cell's axes; `step` is in voxels.
+// The weights of a cell's three opacities (along x, y and z) for a ray; `step` is in voxels.
 vec3 weights_of(vec3 direction, vec3 step)
 {
     return STRETCHED != 0u ? step * step / dot(step, step) : direction * direction;
@@ -284,7 +284,7 @@ float along(const Surface s, const Block block, vec3 direction, float leaves, iv
     const vec3 near_2 = begin + params.near_taps[2].distance * step;
     const ivec3 own = in_block + NEAR_AHEAD;
     float left_0 = near_left(block, near_0, SOFT_NEAR[0]), left_1 = near_left(block, near_1, SOFT_NEAR[1]);
-    // The last sample's stretch is twice as long as that of the other samples.
+    // The stretch of the last sample in voxels is twice as long as the stretches of the others.
     float half_2 = near_left(block, near_2, SOFT_NEAR[2]);
     half_2 = ivec3(near_2) == own ? 1.0 : half_2;
     const float left_2 = half_2 * half_2;

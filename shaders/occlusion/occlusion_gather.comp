@@ -41,7 +41,7 @@ layout(binding = 13, r32ui) uniform writeonly uimage3D around_4;
 
 const uint CELLS_A_SIDE = NEAR_SIDE / CELL_SIZE;
 const uint CELLS_OF_ALL = CELLS_A_SIDE * CELLS_A_SIDE * CELLS_A_SIDE;
-// `near` starts as 0, which is right where nothing is visible. Work is skipped by loop counts, not by branches.
+// `near` starts as 0, which is right where nothing is visible. Loop counts, instead of branches, skip work.
 const uint CELLS_OF_ONE = (CELLS_OF_ALL + OCCLUSION_SPLIT - 1u) / OCCLUSION_SPLIT;
 shared uint cells[CELLS_OF_ONE];
 shared uint cell_count;
@@ -122,7 +122,7 @@ void copy_cells(const OcclusionGatherParams params, const OcclusionJob job, uint
     const ivec3 behind = ivec3(side * scratch_place(gl_WorkGroupID.x));
     for (uint i = 64u * gl_WorkGroupID.z + gl_LocalInvocationIndex; i < min(side * side * side, end);
          i += 64u * OCCLUSION_SPLIT) {
-        // Float arithmetic is exact for these numbers; integer division is slow.
+        // Float arithmetic is exact for numbers this small, and faster than integer division.
         const uint row = uint((float(i) + 0.5) * inverse_side), z = uint((float(row) + 0.5) * inverse_side);
         const ivec3 texel = ivec3(i - side * row, row - side * z, z), voxel = texel - apron << shift;
         const uint entry = entry_at(params.reach, voxel >> 5);

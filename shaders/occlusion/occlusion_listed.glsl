@@ -116,7 +116,7 @@ void list_voxels(const OcclusionJob job)
             if (index < found && (bits >> k & 1u) != 0u) add_voxel(cell << 6u | 4u * row + k);
     }
 #ifdef PAGED
-    // Excludes apron voxels that neighbours list as their own.
+    // Excludes voxels of the apron that neighbouring bricks list as their own.
     for (uint i = OCCLUSION_SPLIT * lane + gl_WorkGroupID.z; i < APRON_VOXELS; i += 64u * OCCLUSION_SPLIT) {
         const ivec3 voxel = apron_voxel(i);
         const uint entry = entry_at(params.reach, voxel >> 5);

@@ -9,7 +9,7 @@
 //
 // Needs what march.glsl needs, and a table with points (raycast.h). Defines take_samples().
 
-// The part of a ray inside one half of a cell and inside one step.
+// The part of a ray that lies inside one half of a cell and inside one step.
 struct Stretch {
     float begin, extent;   // lengths along the ray
     Density density;       // of its middle
@@ -114,7 +114,7 @@ Line line_at(const RaycastParams params, float density, bool rises, bool is_cons
     }
     Line line;
     line.first = before - 1;
-    // The last point belongs to the line that ends there.
+    // A density at the last point belongs to the line that ends at this point.
     if (is_constant && line.first == last && density == point_density(params, last)) line.first = last - 1;
     line.is_inside = line.first >= 0 && line.first < last;
     const int first = clamp(line.first, 0, last), second = clamp(line.first + 1, 0, last);

@@ -6,7 +6,7 @@ layout(binding = 13, rgba32f) uniform image2D rays;   // KEPT_NOTHING: one texel
 
 struct Kept {
     vec4 sum;         // KEPT_ALL: what the ray has gathered
-    vec2 shell;       // position of the next iso-surface, and where the search continues
+    vec2 shell;       // length to the next iso-surface, and length from which the search continues
     uint step;        // KEPT_ALL: index of the next step
     bool is_inside;   // KEPT_ALL: whether the ray is inside the iso-surface
     bool is_done;     // KEPT_ALL

@@ -72,7 +72,7 @@ uint steps_to_leave(const RaycastParams params, const Ray ray, vec3 position, co
     const vec3 cell = vec3(uvec3(position) >> place.cell_shift);
     const vec3 box = vec3(uvec3(position) >> place.box_shift);
     const float cell_size = float(1u << place.cell_shift), box_size = float(1u << place.box_shift);
-    // A brick's data is valid only inside that brick.
+    // A brick's leap distances are valid only inside that brick.
     const vec3 bound = clamp(cell_size * (cell + mix(vec3(1.0 - reach), vec3(reach), ray.ahead)), box_size * box,
                              box_size * (box + 1.0));
 #else
@@ -202,7 +202,7 @@ void take_sample(const RaycastParams params, const Ray ray, const Lattice lattic
 void take_samples(const RaycastParams params, const Ray ray, const Lattice lattice, uint end_step, float until,
                   inout March march, inout Work work)
 {
-    const uint first = march.i;   // this step is always taken, even if `until` is rounded to before it
+    const uint first = march.i;   // the first step is always taken, even if `until` is rounded to before it
     bool is_behind = false;
     bool searches_on = march.i < end_step && march.sum.a < params.opacity_limit && !march.waits;
     if (searches_on) do {
@@ -239,7 +239,7 @@ void take_samples(const RaycastParams params, const Ray ray, const Lattice latti
             goes_on = goes_on && !march.waits && march.i < end_step && march.unseen < patience &&
                       march.sum.a < params.opacity_limit;
         } while (goes_on);
-        // The two loops may round a border differently, so that neither of them advances; this forces a step.
+        // The two loops may round a border differently, so that neither loop advances: this line then forces a step.
         march.i += uint(march.i == step_before && !march.waits && !is_behind);
         if (COUNT_WORK != 0u) ++work.turns;
         searches_on = march.i < end_step && march.sum.a < params.opacity_limit && !march.waits && !is_behind;

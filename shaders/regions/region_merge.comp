@@ -21,7 +21,7 @@ uint find_root_halving(uint run)
     while (parent != run) {
         const uint above = parents.of[parent];
         if (above != parent) atomicMin(parents.of[run], above);
-        run = parent;   // running this again changes nothing: a root is its own parent
+        run = parent;   // repeating this changes nothing: a root is its own parent
         parent = above;
     }
     return run;
@@ -53,7 +53,7 @@ void unite_with_row(ivec3 here, uint word, int dx, int dy, int dz)
 {
     const ivec3 row = here + ivec3(0, dy, dz);
     const uint middle = word_at(row);
-    // Bit b of `shifted` is the neighbour of bit b in the other row.
+    // Bit b of `shifted` is the voxel in the other row that is the neighbour of bit b.
     uint shifted = middle;
     if (dx < 0) shifted = middle << 1 | word_at(row - ivec3(1, 0, 0)) >> 31;
     if (dx > 0) shifted = middle >> 1 | word_at(row + ivec3(1, 0, 0)) << 31;
