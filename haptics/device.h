@@ -22,7 +22,7 @@ inline constexpr double MAX_REACH_M = 10.0;  ///< no device reaches farther from
 struct DeviceState {
     uint64_t time_ns = 0;         ///< position's time on the device's own steady clock; only differences are meaningful
     uint32_t sequence = 0;        ///< counts states; a gap means lost states
-    uint32_t force_sequence = 0;  ///< number of the force (see write()) that was in effect at `time_ns`
+    uint32_t force_sequence = 0;  ///< number of the force (as passed to write()) that was in effect at `time_ns`
     glm::dvec3 position_m{0.0};
     glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
     uint32_t buttons = 0;  ///< a set of PAINT_BUTTON and MOVE_BUTTON

@@ -10,7 +10,7 @@ namespace shvr {
 namespace {
 
 constexpr double VELOCITY_CUTOFF_HZ = 100.0;
-/// Upper bound of a tick's length in fades: a longer pause of the servo counts as this long.
+/// Maximum length of a tick for the fades: a longer pause of the servo counts as this long.
 constexpr uint64_t MAX_TICK_NS = 10'000'000;
 /// The thesis damps by the motion per tick, not per second. With ticks of this length, both definitions agree.
 constexpr double THESIS_TICK_S = 0.001;
@@ -104,7 +104,7 @@ void believe_or_not(const DeviceState& state, ForceMemory& memory)
     if (memory.glitches >= GLITCHES_TO_ACCEPT) accept_elsewhere(state, memory);
 }
 
-/// Returns `value` after `dt_ns` of a linear fade: towards 1 if `rises`, else towards 0. A full fade takes `whole_ns`.
+/// Returns `value` after a linear fade for `dt_ns`: towards 1 if `rises`, else towards 0. A full fade takes `whole_ns`.
 double faded(double value, bool rises, uint64_t dt_ns, uint64_t whole_ns)
 {
     const double change = double(dt_ns) / double(whole_ns);
@@ -178,7 +178,7 @@ glm::dvec3 click_of(const ForceSettings& settings, const DeviceCaps& caps, const
     const bool begins = pull.in_contact && click.off_ns >= CLICK_PAUSE_NS && speed >= CLICK_LEAST_SPEED;
     if (pull.in_contact)
         click.off_ns = 0;
-    else if (pull.is_usable)  // if the relevance is unusable, a missing contact proves nothing
+    else if (pull.is_usable)  // unusable relevance does not prove that there is no contact
         click.off_ns = std::min(click.off_ns + dt_ns, CLICK_PAUSE_NS);
     if (!settings.clicks || !caps.outputs_force) {
         click.left_ns = 0;

@@ -27,11 +27,11 @@ namespace shvr {
 enum ForceFlag : uint32_t {
     FORCE_NO_DEVICE = 1,     ///< lost, silent or not calibrated
     FORCE_NO_REGION = 2,     ///< the relevance around the probe is missing or too old: the force fades out
-    FORCE_FAULT = 4,         ///< a non-finite position or force; latched until ForceSettings::reset changes
+    FORCE_FAULT = 4,         ///< a position or force is not finite; stays set until ForceSettings::reset changes
     FORCE_CLAMPED = 8,       ///< at the device's peak
     FORCE_ENGAGING = 16,     ///< fading in
     FORCE_WARM = 32,         ///< limited to the motors' continuous force
-    FORCE_SLOW = 64,         ///< states of the device arrive too rarely: half the stiffness, or none
+    FORCE_SLOW = 64,         ///< the device's states arrive too rarely: half the stiffness, or none
     FORCE_OUTSIDE = 128,     ///< outside the box in which the device's forces are accurate
     FORCE_LET_GO = 256,      ///< no force, on the user's request
     FORCE_OFF_OBJECT = 512,  ///< object following: the probe left its object, and may soon touch another
@@ -45,7 +45,7 @@ enum ForceFlag : uint32_t {
 /// that trembles on a surface feels no buzz.
 struct ClickMemory {
     glm::dvec3 peak_n{0.0};  ///< peak of the pulse in progress
-    uint64_t left_ns = 0;    ///< remaining time of the pulse; 0: no pulse
+    uint64_t left_ns = 0;    ///< remaining time of the pulse; 0: no pulse in progress
     uint64_t off_ns = 0;     ///< how long nothing has been touched
 };
 inline constexpr double CLICK_N = 0.25;

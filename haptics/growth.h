@@ -19,20 +19,20 @@
 
 namespace shvr {
 
-/// Words of rows that are still to be propagated. Each word is queued at most once.
+/// Words of rows whose bits are still to be propagated. Each word is queued at most once.
 struct GrowthList {
     std::array<uint32_t, RelevancePatch::MAX_WORDS> ring{};
     std::array<uint32_t, RelevancePatch::MAX_WORDS / 32> waits{};  ///< a bit per word: whether the word is queued
     uint32_t first = 0, count = 0;
 };
 
-/// Empties `grown` and moves it to the position of `mask`.
+/// Empties `grown`, and gives it the position of `mask`.
 void begin_growth(const RelevancePatch& mask, RelevancePatch& grown, GrowthList& list) noexcept;
 /// Seeds `grown` with the voxels of `object` that are set in `mask`. If the levels of these patches differ, seeds only
 /// voxels whose centres lie in the ball. Returns the number of words that contain seeds.
 uint32_t seed_from_object(const RelevancePatch& object, const RelevancePatch& mask, const glm::dvec3& centre,
                           double radius, RelevancePatch& grown, GrowthList& list) noexcept;
-/// Seeds with the voxel of `mask` in the ball that is nearest to the ball's centre. Returns false if there is none.
+/// Seeds `grown` with the voxel of `mask` in the ball that is nearest to the ball's centre. Returns false if none is.
 bool seed_nearest(const RelevancePatch& mask, const glm::dvec3& centre, double radius, RelevancePatch& grown,
                   GrowthList& list) noexcept;
 /// Processes up to `steps` words of the list. The list is empty when `grown` holds all voxels connected to its seeds.

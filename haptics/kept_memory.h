@@ -17,7 +17,7 @@ public:
     ~KeptMemory();
     KeptMemory(const KeptMemory&) = delete;
     KeptMemory& operator=(const KeptMemory&) = delete;
-    /// Returns false if the memory is loaded but not locked (RLIMIT_MEMLOCK, typically 8 MiB): the system may evict it.
+    /// Returns false if the memory is loaded but not locked (RLIMIT_MEMLOCK, typically 8 MiB): it may then be evicted.
     bool is_kept() const { return is_kept_; }
 
 private:

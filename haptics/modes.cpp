@@ -54,7 +54,7 @@ ModePull pull_to_object(const ForceSettings& settings, const RelevancePatch& pat
     const bool may_grow = is_finite(probe) && patch.settings == settings.relevance_settings;
     const RelevancePatch& object = may_grow ? advance_object(patch, probe, radius, growth) : growth.object();
     ModePull pull = pull_in(settings, object, probe);
-    // Where too little of the ball is known, the probe counts as on its object, since the unknown part may contain it.
+    // If too little of the ball is known, the probe counts as on its object, which the unknown part may contain.
     const RelevancePatch& felt = object.sequence == 0 ? patch : object;
     const bool is_on = pull.in_contact || felt.known_part(probe, radius).share < MIN_KNOWN_SHARE;
     if (may_grow) keep_contact(patch, probe, radius, is_on, now_ns, growth);

@@ -15,7 +15,7 @@ struct SurfaceMemory {
                             ///< physical units
 };
 
-/// Motion towards the camera, as a share of the probe's radius, that releases a surface; not 0, since hands tremble.
+/// Motion towards the camera, as a share of the probe's radius, that releases a surface; above 0, since hands tremble.
 inline constexpr double RELEASE_SHARE = 0.05;
 /// Fraction of `surface_share` below which a surface also releases the probe and is armed again.
 inline constexpr double SURFACE_HYSTERESIS = 0.75;

@@ -92,7 +92,7 @@ glm::dvec3 point_of(double of_volume, double of_height, double of_turn)
     return r * glm::dvec3(across * std::cos(phi), across * std::sin(phi), z);
 }
 
-/// `IS_CUT`: part of the ball lies beyond `reach`. The common case is a whole ball, for which false is a tenth faster.
+/// `IS_CUT`: part of the ball lies beyond `reach`. For a whole ball, the common case, false is a tenth faster.
 template <bool IS_CUT>
 BallIntegrals integrate_part(const RelevancePatch& patch, const glm::dvec3& centre, double radius,
                              const glm::dvec3& reach) noexcept
@@ -210,7 +210,7 @@ Proxy find_sampled_proxy(const RelevancePatch& patch, const glm::dvec3& centre, 
 
 namespace {
 
-/// Returns the number by which the integral of a - p is divided. Only for laws that integrate.
+/// Returns the number by which the integral of a - p is divided. Only for the laws that use integrals.
 double denominator_of(ProxyLaw law, const BallIntegrals& ball, double radius, double whole) noexcept
 {
     switch (law) {

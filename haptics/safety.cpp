@@ -77,7 +77,7 @@ void measure_latency(const DeviceCaps& caps, const DeviceState& state, uint64_t 
     if (!caps.tells_force_sequence || state.force_sequence == 0) return;
     const SentForce effect = force_in_effect(caps, state, now_ns, sent);
     if (effect.sequence == 0 || now_ns < effect.time_ns) return;
-    // A force acts for one tick before the state that reports it, so that tick is not part of the latency.
+    // A force acts for one tick before the device reports it in a state, so that tick is not part of the latency.
     const double latency_s = std::max(double(now_ns - effect.time_ns) * 1e-9 - tick_s, 0.0);
     const double share = 1.0 - std::exp(-tick_s / LATENCY_SMOOTHING_S);
     sent.latency_s += share * (latency_s - sent.latency_s);

@@ -67,7 +67,7 @@ struct EnergyMemory {
     glm::dvec3 position_m{0.0}, field_n{0.0};  ///< device's position and undelayed force at the last state
     double made_j = 0.0;                       ///< energy not dissipated yet; at least 0
 };
-inline constexpr double MAX_TAKING = 2.0;  ///< N s/m: more damping is unstable itself at two ticks of delay
+inline constexpr double MAX_TAKING = 2.0;  ///< N s/m: above this, damping itself is unstable at two ticks of delay
 inline constexpr double TAKING_MOST_N = 0.3;
 void observe_energy(const glm::dvec3& position_m, const glm::dvec3& field_n, const glm::dvec3& in_effect_n,
                     EnergyMemory& energy);

@@ -32,7 +32,7 @@ public:
         timespec deadline{};
         deadline.tv_sec = time_t(deadline_ns / SECOND_NS);
         deadline.tv_nsec = long(deadline_ns % SECOND_NS);
-        // A signal may interrupt the sleep; any other error would be a bug here. Either way, checks the clock again.
+        // A signal may interrupt the sleep; any other error would be a bug here. In both cases, checks the clock again.
         while (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &deadline, nullptr) != 0 && now_ns() < deadline_ns) {
         }
     }

@@ -34,7 +34,7 @@ struct ForceSettings {
     double movement_scale = 1.0;          ///< user's scale of the hand's motion; the force is divided by it
     double strength = 1.0;                ///< factor of the force, 0 ... 1
     bool clicks = false;                  ///< a short pulse when contact begins; only for devices with motors
-    bool let_go = false;                  ///< no force from the next tick on; when unset, the force fades in again
+    bool let_go = false;                  ///< no force from the next tick on; once false again, the force fades in
     bool finds_middle = false;            ///< tools act at the middle of the touched structure; no effect on the force
     uint32_t relevance_settings = 0;      ///< counts changes of threshold and groups; forces from older relevance fade
     bool operator==(const ForceSettings&) const = default;

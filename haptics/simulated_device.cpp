@@ -60,7 +60,7 @@ ReadResult SimulatedDevice::read(DeviceState& state) noexcept
         jump_ = wish.jump;
         position_m_ = wish.position_m;
         velocity_ = glm::dvec3(0.0);
-        in_flight_.fill({});  // forces that were written at the old position must not act at the new one
+        in_flight_.fill({});  // forces written at the old position must have no effect at the new one
     }
     // write() stores this tick's force in the slot of `ticks_`. Without a write, the last force stays in effect.
     const size_t slots = in_flight_.size();

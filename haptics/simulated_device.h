@@ -24,7 +24,7 @@ namespace shvr {
 struct HandWish {
     glm::dvec3 position_m{0.0};
     uint32_t buttons = 0;
-    uint32_t jump = 0;  ///< a change moves the hand to the wish at once: repositioned, not moved by the user
+    uint32_t jump = 0;  ///< a change moves the hand to the wish at once; this is no motion of the user
 };
 
 struct HandModel {

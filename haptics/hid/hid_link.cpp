@@ -25,7 +25,7 @@ using std::chrono::milliseconds;
 
 constexpr int READ_TIMEOUT_MS = 10;  ///< short, so that shutdown never has to interrupt a read
 constexpr milliseconds REOPEN_EVERY{15};
-constexpr milliseconds LOOK_EVERY{5};         ///< interval at which threads check whether the link is closing
+constexpr milliseconds LOOK_EVERY{5};         ///< interval at which threads check whether they must end
 constexpr int MAX_REPORTS_A_DRAIN = 256;      ///< upper bound, so that a flood of reports cannot delay the newest
 constexpr uint64_t MAX_STEP_NS = 20'000'000;  ///< longest step of rate control: no leap after a pause
 // With a rate-control device, the probe yields to forces as with the mouse: 75 N/m, settling within about 10 ms.
@@ -66,7 +66,7 @@ public:
           force_sequence_(bits_of(profile, HidQuantity::force_sequence)),
           time_(bits_of(profile, HidQuantity::time))
     {}
-    /// Returns null if the report is malformed (see `is_malformed()`), or if no report has stated a position yet.
+    /// Returns null if the report is malformed (see `is_malformed()`), or if no report has contained a position yet.
     std::optional<DeviceState> next(std::span<const uint8_t> report)
     {
         is_malformed_ = false;
@@ -74,7 +74,7 @@ public:
         is_malformed_ = !input && !is_ignored(profile_, report);
         if (!input) return std::nullopt;
         ++reports_;
-        // Reports without a time or a sequence number get their arrival time or a running number.
+        // A report without a time gets its arrival time; a report without a sequence number gets a running number.
         if (!clock_) state_.time_ns = steady_ns();
         if (input->time) state_.time_ns = uint64_t(double(time_.next(*input->time)) * clock_->scale * 1e9 + 0.5);
         if (!profile_.find_input(HidQuantity::sequence)) state_.sequence = reports_;
@@ -305,7 +305,7 @@ private:
 
     void send(const Command& command, bool enabled)
     {
-        // An unverified device gets no output report at all, since the effect of one is unknown.
+        // An unverified device gets no output report at all, since the effect of such a report is unknown.
         if (!profile_.verified || !profile_.output || write_failed_) return;
         const std::shared_ptr<HidPort> open = port();
         if (open && !open->write(encode(profile_, command.force_n, command.sequence, enabled).span()))

@@ -19,7 +19,7 @@ namespace shvr {
 struct HidInput {
     std::optional<glm::dvec3> position_m;
     std::optional<glm::dquat> rotation;
-    std::optional<glm::dvec3> rate, turn_rate;  ///< fractions of the full deflection, not yet shaped
+    std::optional<glm::dvec3> rate, turn_rate;  ///< fractions of full deflection, before dead zone, gain and curve
     std::optional<uint32_t> buttons;
     std::optional<bool> calibrated;
     std::optional<uint32_t> sequence, force_sequence, time;

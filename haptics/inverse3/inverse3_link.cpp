@@ -106,7 +106,7 @@ public:
           wake_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC))
     {
         if (wake_ < 0) fail("the Inverse3's thread cannot be woken; expected fewer open files");
-        options_.device_id = device_id_;  // after a loss, look for the same device again
+        options_.device_id = device_id_;  // after a lost connection, looks for the same device
         begin();
         thread_ = std::thread(&Link::run, this);
         ::pthread_setname_np(thread_.native_handle(), "inverse3");
@@ -345,7 +345,7 @@ private:
                                !is_unwritten && commands_.value().interruptions == interruptions_ &&
                                std::isfinite(glm::length(wanted));
         const bool is_pulling = last_sent_force_ != glm::dvec3(0.0);
-        if (is_pulling && !may_force) {  // zero is sent at once, even while a message is unanswered
+        if (is_pulling && !may_force) {  // a zero force is sent at once, even while a message is unanswered
             ++interruptions_;
             if (!send({}, commands_.value().sequence)) lose();
             return;
@@ -361,7 +361,7 @@ private:
     bool send(const glm::dvec3& force_n, uint32_t sequence)
     {
         text_.clear();
-        // + 0.0 turns -0 into 0: rotating the axes of a zero force would otherwise print "-0"
+        // + 0.0 turns -0 into 0; a zero force would otherwise be printed as "-0" after its axes are rotated
         append_inverse3_command(text_, device_id_, to_inverse3(force_n) + 0.0, std::exchange(is_first_, false));
         if (!channels_.states->send_text(text_)) return false;
         has_command_ = false;

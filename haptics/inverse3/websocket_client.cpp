@@ -138,7 +138,7 @@ bool WebSocketClient::receive()
 
 WebSocketReader::Event WebSocketClient::next()
 {
-    // Only the last of many pings gets a pong, as RFC 6455 (5.5.3) allows: a flood of pings causes no flood of answers.
+    // Of many pings, only the last gets a pong, as RFC 6455 (5.5.3) allows: a flood of pings causes no flood of pongs.
     std::optional<std::string> ping;
     WebSocketReader::Event event = reader_.next();
     for (; event == WebSocketReader::Event::ping; event = reader_.next()) ping = reader_.payload();

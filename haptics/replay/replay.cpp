@@ -133,7 +133,7 @@ public:
 
     void add(const TraceTick& tick, const DeviceState& state, const ForceStep& step)
     {
-        // The force of the last tick acted during this motion.
+        // The force of the last tick was in effect during this motion.
         if (has_last_ && is_finite(state.position_m))
             result_.energy_j += glm::dot(last_force_, state.position_m - last_position_);
         has_last_ = is_finite(state.position_m);

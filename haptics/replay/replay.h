@@ -48,7 +48,7 @@ struct ReplayResult {
     std::vector<uint64_t> tick_ns;      ///< time that each step() took on the real clock
     std::vector<ForceStep> steps;       ///< if requested
 };
-/// Returns whether the trace's relevance is used: not with a modelled hand, whose path leaves the recorded relevance.
+/// Returns whether the trace's relevance is used. It is not used with a modelled hand, whose path leaves its region.
 bool replays_relevance(const Trace& trace, const ReplayOptions& options);
 /// If the trace's relevance is not used, calls `make_relevance` for new relevance, also when the threshold changes.
 /// Fails if that function is needed but empty.

@@ -56,8 +56,8 @@ void read_caps(const JsonNode& node, DeviceCaps& caps)
     caps.tells_force_sequence = node["tells_force_sequence"].flag(caps.tells_force_sequence);
 }
 
-/// Returns whether the columns are equally long and at right angles, within rounding. Only then is the inverse equal to
-/// the transpose divided by the scale squared, which the force relies on.
+/// Returns whether the columns are equally long and at right angles, within rounding. If they are, the inverse is the
+/// transpose divided by the scale squared, on which the force relies.
 bool is_rotation_and_scale(const glm::dmat3& matrix)
 {
     constexpr double ROUNDING = 1e-6;
@@ -221,7 +221,7 @@ private:
         const bool is_other = !trace_.swaps.empty() && trace_.swaps.back() == trace_.ticks.size();
         trace_.ticks.push_back(
             read_tick(node, trace_.ticks.empty() ? nullptr : &trace_.ticks.back(), 1'000'000'000 / trace_.rate_hz));
-        // The first tick of another device has no relevance, unless its line states a relevance time.
+        // The first tick of another device has no relevance, unless the tick's line states a relevance time.
         if (is_other && !node["relevance_time"].exists()) trace_.ticks.back().relevance_time_ns = 0;
     }
     void swap_device()
@@ -278,7 +278,7 @@ Trace parse_trace(const std::string& whole, const std::string& origin)
             continue;
         }
         reader.read_first(document.root());
-        // Checks the hash before reading the lines, so that damage to the file is not reported as a mistake in a line.
+        // Checks the hash before reading the lines, so that damage to the file is not reported as an error in a line.
         if (reader.has_end()) text = without_trace_end(text, origin);
     }
     if (!has_head) fail(origin, " is empty; expected a line {\"shvr_stylus_trace\":1}");
