@@ -133,7 +133,7 @@ void App::follow_workbench()
         keep_drawing(AFTERGLOW_S);
 }
 
-/// If every frame fails for a while, the window is useless: the program then ends with the reason.
+/// If every frame fails for a while, the window cannot be used, so the program ends with the reason.
 void App::draw()
 {
     constexpr double PATIENCE_S = 10.0;
@@ -241,7 +241,7 @@ double App::time_to_wait() const
 
 namespace {
 
-/// Returns whether another motion follows with no button held: only the last position of such motions matters.
+/// Returns whether another motion with no button held follows: of such motions, only the last position matters.
 bool is_overtaken(const std::vector<InputEvent>& events, const InputEvent& event)
 {
     const size_t next = size_t(&event - events.data()) + 1;
@@ -283,7 +283,7 @@ bool App::panels_have_keyboard() const
            bench_->model().shows_palette;
 }
 
-/// Holds back input after a key that may have opened or closed a field, until a frame shows where keys go.
+/// After a key that may have opened or closed a field, holds back input until a frame shows which widget gets the keys.
 std::vector<InputEvent> App::events_in_turn(double timeout_s)
 {
     for (InputEvent& event : window_.wait_events(timeout_s)) held_back_.push_back(std::move(event));
@@ -347,7 +347,7 @@ void App::apply_all()
 {
     for (const Action& action : std::exchange(actions_, {})) {
         was_asked_to_close_ &= action.is<Quit>();
-        // Unavailable actions are ignored while nothing is open: an error for each key would cover the hint.
+        // While nothing is open, unavailable actions are ignored: an error message for each key would cover the hint.
         if (!bench_->is_open() && !bench_->why_not(action).empty()) continue;
         static_cast<void>(bench_->apply(action));
     }

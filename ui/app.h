@@ -27,7 +27,7 @@ struct AppOptions {
     gpu::Budget budget;
     int threads = 0;
     bool validation = false;
-    const std::atomic<bool>* stop = nullptr;  ///< once true, the window closes as if its close button was clicked
+    const std::atomic<bool>* stop = nullptr;  ///< once true, the window closes as if its close button had been clicked
     bool saves_outside = false;               ///< sessions may write outside their folders without asking the user
     bool allow_force = false;                 ///< a haptic device with a verified profile may exert forces
     std::filesystem::path settings_folder{};  ///< folder of preferences and the user's transfer functions; empty: none

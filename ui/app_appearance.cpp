@@ -59,7 +59,7 @@ void App::follow_appearance()
     keep_drawing(0.5);  // while panels settle into their new places
 }
 
-/// Call after panels or the menu were used by keyboard: otherwise the framed item would react to the next Space.
+/// Call after panels or the menu were used by keyboard; otherwise, the framed item would react to the next Space key.
 void App::leave_panels() const
 {
     const bool has_popup = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);

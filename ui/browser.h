@@ -5,8 +5,8 @@
 
 namespace shvr::ui {
 
-/// Opens a local page with xdg-open; the browser may outlive this program. Returns false if xdg-open is missing;
-/// failures of the browser itself are not detected.
+/// Opens a local page with xdg-open; the browser may outlive this program. Returns false if xdg-open is missing; does
+/// not detect whether the browser itself fails.
 bool show_in_browser(const std::filesystem::path& page);
 
 }  // namespace shvr::ui

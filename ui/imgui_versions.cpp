@@ -30,7 +30,7 @@ ImVec2 place_of(const glm::dvec2& pixels)
     return {float(pixels.x) / scale.x, float(pixels.y) / scale.y};
 }
 
-/// Decides whether the next press counts as a double click: by the times of events, not by those of frames.
+/// Decides whether the next press counts as a double click: by the times of events, not by the times of frames.
 void allow_double_click(bool is_double)
 {
     ImGui::GetIO().MouseDoubleClickTime = is_double ? std::numeric_limits<float>::max() : 0.0f;
@@ -101,7 +101,7 @@ void tell_imgui_key(GLFWwindow* window, int key, bool pressed, int mods)
     if (!is_alt(key)) ImGui_ImplGlfw_KeyCallback(window, key, 0, pressed ? GLFW_PRESS : GLFW_RELEASE, mods);
 }
 
-/// Adds the character to the frame's text immediately, since code that reads that text would not see a queued event.
+/// Adds the character to the frame's text immediately: code that reads this text would not see a queued event.
 void tell_imgui_character(GLFWwindow*, unsigned character)
 {
     if (character == 0) return;

@@ -138,7 +138,7 @@ void Keyboard::hold(double seconds, int mods, const std::function<bool(int key)>
         return true;
     });
     for (const Held& held : held_) {
-        // When Ctrl + S ends, Ctrl may be released slightly before S: the S that remains must not act as a shortcut.
+        // When the user releases Ctrl + S, Ctrl may come first: the S that is still held must not act as a shortcut.
         const std::vector<const Shortcut*> begun = shortcuts_for(held.pressed, held.pressed.mods, model.keymap);
         for (const Shortcut* shortcut : shortcuts_for(held.pressed, mods, model.keymap))
             if (shortcut->mode == Shortcut::Mode::hold && std::ranges::find(begun, shortcut) != begun.end())

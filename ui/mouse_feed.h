@@ -23,8 +23,8 @@ public:
         bool is_double = false;  ///< a press may be the second of a double click, by time; the distance is not checked
     };
 
-    /// Adds a change that happened between the two times, which differ if a long frame delayed the input. Buttons other
-    /// than the three are ignored.
+    /// Adds a change of a button between `earliest_s` and `latest_s`, which differ if a long frame delayed the input.
+    /// Ignores buttons other than left, right and middle.
     void add(int button, bool pressed, const glm::dvec2& at, double earliest_s, double latest_s);
     /// Returns the state for the next frame.
     Frame next();

@@ -47,7 +47,7 @@ public:
 
     /// Restarts the measurement of first pictures, because another scan was opened.
     void opened(double time_s);
-    /// Reports the press of a key or button, whose effect the next frame will show.
+    /// Reports the press of a key or button, the effect of which the next frame will show.
     void asked(double time_s) { unanswered_s_.push_back(time_s); }
     bool has_unanswered() const { return !unanswered_s_.empty(); }
 

@@ -100,7 +100,7 @@ public:
 
         if (!continues(pen, top, size, is_seen)) begin_text(top);
         ScreenText* const text = has_text_ ? &texts_.back() : nullptr;
-        // Characters wholly beyond the edge are not drawn, so a cut between two characters goes unnoticed.
+        // Characters entirely beyond the edge are not drawn, so a text cut between two characters is not detected.
         const bool is_cut = begin.x > whole_begin.x + CUT || end.x < whole_end.x - CUT;
         if (is_seen && !text) {
             texts_.push_back({.text = {}, .window = window_, .begin = begin, .end = end});

@@ -101,7 +101,7 @@ void Swapchain::choose_format()
         vkGetPhysicalDeviceSurfaceFormatsKHR(device_.physical(), surface_, count, items);
     });
     // The layers are already encoded and are copied byte by byte, so the format must not encode them again. Some
-    // drivers also list these formats with the colour spaces of HDR screens: sRGB is preferred.
+    // drivers also list such formats with the colour spaces of HDR screens: sRGB is preferred.
     for (const bool any_space : {false, true})
         for (const VkSurfaceFormatKHR& candidate : formats) {
             const bool has_8_bits =

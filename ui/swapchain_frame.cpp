@@ -198,7 +198,7 @@ bool Swapchain::prepare(Frame& frame)
     glm::ivec2 size(0);
     glfwGetFramebufferSize(window_, &size.x, &size.y);
     if (size.x <= 0 || size.y <= 0) return false;
-    // Tries twice: a new swapchain may be out of date at once, and no caller would retry the frame.
+    // Tries twice: a new swapchain may be out of date at once, and no caller tries the frame again.
     for (int tries = 0; tries < 2; ++tries) {
         if (!swapchain_ || size != made_for_) is_stale_ = true;
         if (is_stale_ && !create_swapchain()) return false;
@@ -235,7 +235,7 @@ bool Swapchain::acquire(Frame& frame)
     return true;
 }
 
-/// Compares the capabilities, since some surfaces stay suboptimal however often their swapchain is re-created.
+/// Compares the capabilities, since some surfaces remain suboptimal however often their swapchain is re-created.
 bool Swapchain::surface_has_changed() const
 {
     VkSurfaceCapabilitiesKHR now{};

@@ -103,7 +103,7 @@ void Viewport::press(const ButtonEvent& event, const When& when, const Model& mo
     last_ = pressed_ = event.at;
     was_elsewhere_ = false;
     if (event.button == GLFW_MOUSE_BUTTON_RIGHT && turns) {
-        // The pointer may have moved since the probe last followed it, without an event.
+        // The pointer may have moved without an event since the probe last followed it.
         if (!is_map && !was_here) actions.emplace_back(ProbeTo{pane_, in_pane(event.at, model), true});
         gesture_ = Gesture::paint;
         actions.emplace_back(Paint{true});

@@ -81,7 +81,7 @@ private:
     int button_ = 0;
     glm::dvec2 last_{0.0}, pressed_{0.0};
     std::optional<uint32_t> pressed_node_;
-    bool was_elsewhere_ = true;  ///< the pointer was outside the picture before the next motion
+    bool was_elsewhere_ = true;  ///< at the last motion, the pointer was outside the picture
     std::optional<Pointer> pointer_;
     double pressed_s_ = 0.0;              ///< latest time of the left button's press
     bool is_second_ = false;              ///< the press is the second of a double click

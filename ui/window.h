@@ -92,7 +92,7 @@ public:
     void tell_ui(const InputEvent& event);
     /// Returns whether a key is held down.
     bool is_down(int key) const;
-    /// Returns whether presses of buttons are still queued for the interface, which gets one per frame.
+    /// Returns whether button presses are still queued for the interface, which gets one press per frame.
     bool has_clicks() const;
 
     /// Layers must have blue first (View::Options).

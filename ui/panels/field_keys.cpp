@@ -26,7 +26,7 @@ void FieldKeys::before_field(bool are_asked_for)
         are_here_ = false;
     }
     if (!are_awaited()) return;
-    // Repeats the request, since Dear ImGui drops a request made in the frame in which a dialog closes.
+    // Repeats the request: Dear ImGui drops a request that is made in the frame in which a dialog closes.
     if (!are_here_ && (frame - awaited_since_) % FRAMES_TO_ANSWER == 0) {
         ImGui::SetWindowFocus();
         ImGui::SetKeyboardFocusHere();

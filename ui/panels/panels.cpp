@@ -40,7 +40,7 @@ void change(const PanelRow& row, const PanelLayout& changed, Actions& actions)
     actions.push_back(Prefer{patch_of_panel(row.id, changed)});
 }
 
-/// The user's choice decides; without one, the tracing panel unfolds once a trace exists or is being made.
+/// Returns the user's choice; without a choice, the tracing panel unfolds once a trace exists or is being made.
 bool is_folded(const PanelRow& row, const Model& model)
 {
     const WindowLayout& layout = model.preferences.layout;

@@ -82,7 +82,7 @@ void set_shapes(ImGuiStyle& style)
 void set_colors(ImGuiStyle& style)
 {
     for (const Use& use : USES) style.Colors[use.color] = color_of(use.role, use.alpha);
-    // In the light theme, frames are white on an almost white window, so they need an outline.
+    // In the light theme, input fields are white on an almost white window, so they need an outline.
     style.FrameBorderSize = present_theme == Theme::light ? 1.0f : 0.0f;
     style.Colors[ImGuiCol_ModalWindowDimBg] = ImVec4(0.0f, 0.0f, 0.0f, present_theme == Theme::light ? 0.3f : 0.45f);
     style.Colors[ImGuiCol_NavWindowingDimBg] = style.Colors[ImGuiCol_ModalWindowDimBg];

@@ -77,7 +77,7 @@ private:
 
 }  // namespace
 
-/// Draws the number over the handle, on a background in the frame's colour; above and below, the handle stays visible.
+/// Draws the number over the handle, on a background in the frame's colour; the handle stays visible above and below.
 bool slider_scalar(const char* id, ImGuiDataType type, void* value, const void* lower, const void* upper,
                    const char* format, ImGuiSliderFlags flags)
 {
@@ -108,7 +108,7 @@ bool slider_scalar(const char* id, ImGuiDataType type, void* value, const void* 
     return is_changed;
 }
 
-/// Divides the speed, since Dear ImGui changes a value ten times as fast with Shift, not a tenth as fast.
+/// Divides the speed: with Shift, Dear ImGui changes a value ten times as fast, but a tenth of the speed is wanted.
 bool drag_number(const char* id, double& value, double speed, double lower, double upper, const char* format,
                  ImGuiSliderFlags flags)
 {
@@ -121,7 +121,7 @@ bool is_double_clicked()
 {
     const bool is_hovered = ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenBlockedByPopup);
     if (!is_hovered || !ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) return false;
-    ImGui::ClearActiveID();  // otherwise the widget would follow the mouse, or begin to take typed digits
+    ImGui::ClearActiveID();  // otherwise, the widget would follow the mouse, or take typed digits
     return true;
 }
 

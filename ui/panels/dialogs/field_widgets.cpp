@@ -124,7 +124,7 @@ public:
             const std::filesystem::path begin = value.empty() ? new_file(name, about) : value;
             chooser.ask(begin, places(begin, {}));
         }
-        // Only the field that opened the chooser draws it and takes its path.
+        // The chooser is drawn by the field that opened it, and only this field takes its path.
         if (chooser_of == id)
             if (const auto path = chooser.draw()) value = *path;
         ImGui::PopID();

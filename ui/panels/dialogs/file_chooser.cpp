@@ -172,7 +172,7 @@ void FileChooser::settle(std::chrono::milliseconds patience)
         field_wants_keys_ = true;
         return;
     }
-    // Enters the folder of a typed path, so that the next opening of the dialog begins there.
+    // Enters the folder of the typed path, so that the dialog begins there when it is opened again.
     if (judged_.parent_path() != list_.folder()) {
         enter(judged_.parent_path());
         wanted_name_ = judged_.filename().string();

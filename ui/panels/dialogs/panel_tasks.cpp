@@ -78,7 +78,7 @@ struct TaskDialog {
             ImGui::TextDisabled("%s", why.empty() ? " " : why.c_str());
         }
         const ImVec2 button{6.0f * ImGui::GetFontSize(), 0.0f};
-        // Enter takes effect only after the disk has answered for the options as typed before Enter.
+        // Enter takes effect once the disk has answered for the options as typed before Enter.
         if (begins) is_entered_ = false;
         if (!has_chooser && enter_confirms()) is_entered_ = true;
         const bool confirms = std::exchange(is_entered_, is_entered_ && why == WAITS) && why.empty();
@@ -150,7 +150,7 @@ struct Dialogs {
 };
 Dialogs dialogs;
 
-/// Resets the tasks when another scan is opened, since their file names would overwrite files of the previous scan.
+/// Resets the tasks when another scan is opened, since the tasks' file names are those of files of the previous scan.
 void forget_another_scan(const Model& model)
 {
     static std::filesystem::path session;

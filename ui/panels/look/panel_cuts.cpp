@@ -68,7 +68,7 @@ void cutting_planes(const Model& model, Actions& actions)
                     axis_row(axis, cut, size[axis], model.volume.spacing[axis], spelled(model.volume.unit), "%.5g");
         ImGui::EndTable();
     }
-    // The displayed planes are clamped to the volume. Planes that the user has not moved keep their stored positions.
+    // The displayed planes are clamped to the volume; planes that the user has not moved keep their stored positions.
     for (int axis = 0; axis < 3; ++axis)
         if (cut.upper[axis] == size[axis] && model.session.cut.upper[axis] >= size[axis])
             cut.upper[axis] = model.session.cut.upper[axis];

@@ -21,7 +21,7 @@ namespace {
 /// State of the name dialogs between frames.
 struct NameState {
     std::string name;     ///< typed
-    std::string renamed;  ///< preset being renamed; empty: the name is for a new preset with the present curve
+    std::string renamed;  ///< preset being renamed; empty: the name is for a new preset of the present curve
 };
 NameState asked;
 

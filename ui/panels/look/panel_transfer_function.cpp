@@ -107,7 +107,7 @@ void draw_area(const CurveAxes& axes, const TransferFunction& function, ImDrawLi
     }
 }
 
-/// Draws the line's segments. They are linear in opacity, and therefore curved on this axis.
+/// Draws the line's segments. A segment is linear in opacity, so it is curved on this axis, the root of opacity.
 void draw_line(const CurveAxes& axes, const Points& points, ImDrawList& list)
 {
     constexpr int PIECES = 16;
