@@ -129,7 +129,7 @@ WITHOUT_DEVICE = ["engine/session", "engine/projects", "engine/bricks", "engine/
                   "haptics/devices"]
 WITH_DEVICE = {"engine/gpu", "engine/passes", "engine/device"}
 MAX_SOURCES = 30  # per folder
-# Folders of the product that may include each other in a cycle. None do; adding one needs a reason here.
+# Folders of the product that may include each other in a cycle. There are none; adding one needs a reason here.
 FOLDER_CYCLES = []
 PRODUCT = {"engine", "haptics", "shaders", "ui"}
 

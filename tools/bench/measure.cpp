@@ -135,8 +135,8 @@ Picture draw(Prepared& prepared, bool counted)
     return prepared.studio->picture_of(prepared.session, prepared.studio->camera(), counted);
 }
 
-/// Returns the milliseconds of a picture without preparation. If settings that differ from the previous run's required
-/// updates (leap grid, sample bits, table), draws and times the picture again.
+/// Returns the milliseconds of a picture without preparation. If settings that differ from those of the previous run
+/// required updates (leap grid, sample bits, table), draws and times the picture again.
 double steady_ms(Prepared& prepared)
 {
     const Picture picture = draw(prepared, false);

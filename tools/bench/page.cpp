@@ -144,7 +144,7 @@ std::string pictures_of(const Pictures& pictures)
     return markup;
 }
 
-/// Returns whether a run gets a label: the qualities do, and the comparison program's run at the step of `interactive`.
+/// Returns whether a run gets a label: all qualities do, and the comparison program's run at the step of `interactive`.
 bool is_labelled(const Measured& run)
 {
     return run.family == "quality" || (is_peer(run.family) && run.name.ends_with("step 0.5"));

@@ -92,7 +92,7 @@ std::string equal_time_csv(const Results& results);
 struct AtPeersError {
     std::string scene;
     const Measured* peer = nullptr;
-    const Measured* fastest = nullptr;    ///< null: every run of SHVR has a larger error
+    const Measured* fastest = nullptr;    ///< null if every run of SHVR has a larger error
     const Measured* same_step = nullptr;  ///< SHVR's run with the same step, whatever its error; null: not measured
 };
 /// The results point into `results`.

@@ -41,7 +41,7 @@ Json points_of(std::initializer_list<Point> points, const char* color = "#f0d8b8
     return {{"points", list}};
 }
 
-/// Shared by several scenes: tubes, surrounded by air with noise (mean 40, standard deviation 5.4).
+/// The session of several scenes: tubes, surrounded by air with noise (mean 40, standard deviation 5.4).
 Json session_of(int64_t side, const glm::uvec2& pixels, const Json& function)
 {
     return {{"shvr_session", 1},
@@ -254,7 +254,7 @@ std::vector<Run> runs_of(const Scene& scene, bool quick)
         runs.push_back({sentence("sampling ", sampling), "sampling", {sentence("render.sampling=", sampling)}});
     for (const double scale : quick ? std::vector{0.5} : std::vector{0.7, 0.5, 0.35})
         runs.push_back({sentence("resolution ", digits_of(scale)), "resolution", {}, scale});
-    // Coarser settings than in practice, to find the cost of errors as large as the comparison program's.
+    // Settings coarser than in practice, to find the cost of errors as large as the comparison program's.
     const auto coarse = [&](double scale, double step, bool preintegration) {
         runs.push_back(
             {sentence("coarse ", digits_of(scale), preintegration ? ", pre-integrated " : ", step ", digits_of(step)),

@@ -133,7 +133,7 @@ void add_input_options(CLI::App& command, Common& common)
                                                digits_of(spacing.z), "]"));
         },
         [&common](const std::string& unit) { common.settings.push_back("volume.unit=" + Json(unit).dump()); });
-    // Bare voxels state no unit. A session would take "voxel" as the unit by default, which contradicts a spacing.
+    // Bare voxels have no unit. A session would then use "voxel" as the unit by default, which contradicts a spacing.
     command.parse_complete_callback([&common] {
         const auto is_given = [&](std::string_view key) {
             return std::ranges::any_of(common.settings,
@@ -331,7 +331,7 @@ Opened open(const std::string& path, const Common& common, LongWork& work, Work:
     opened.project = is_picture ? session.pictured : session_file_of(path);
     Session kept = opened.session;
     choose_thresholds(kept, volume, session.statistics);
-    // A picture has settings of its own, which later changes of the project do not affect.
+    // A picture contains its own settings, on which later changes of the project have no effect.
     const WorkFiles files =
         is_picture ? work_files(opened.session, volume)
                    : with_kept_settings(work_files(opened.session, volume, common.settings), kept, common.settings);

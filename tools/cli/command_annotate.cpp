@@ -33,7 +33,7 @@ public:
     ui::Workbench& bench;
     const AnnotateCommandOptions& options;
     LongWork& work;
-    double done = 0.0, share = 0.0;  ///< shares of the script: all lines before this one, and this line
+    double done = 0.0, share = 0.0;  ///< shares of the script: all lines before the present line, and the present line
     int64_t voxels_changed = 0;
     StrokeResult::ByGroup taken_from{};
     int64_t kept_locked = 0, kept_painted = 0;  ///< voxels

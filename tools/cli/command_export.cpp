@@ -53,7 +53,7 @@ void run_export(const ExportCommandOptions& options)
 {
     const ExportTask task = task_of(options);
     check(task);
-    // The annotations in an archived project are not read, so an export would silently write empty files.
+    // Annotations in an archived project cannot be read, so an export would silently write empty files.
     if (const std::string archived = archived_project(options.project); !archived.empty()) fail(archived);
     LongWork long_work(options.common.quiet);
     Gaps gaps;  // ignored: annotation is exported even if parts of the scan are unreadable

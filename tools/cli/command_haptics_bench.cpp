@@ -107,7 +107,7 @@ constexpr Case CASES[] = {{64, 12.0, TouchMode::object},  {64, 12.0, TouchMode::
 Json run_case(const std::vector<uint8_t>& scene, const Case& one, LongWork& work, Json& first)
 {
     constexpr size_t TICKS = 1500;
-    constexpr uint32_t EVERY = 2;  // every second tick gets new relevance: far more often than from a mirror
+    constexpr uint32_t EVERY = 2;  // every second tick gets new relevance, far more often than in the window
     const Trace trace = make_trace(one.radius, one.mode, TICKS);
     const MakeRelevance make = [&](const RegionWish& wish, double, RelevancePatch& patch) {
         work.stop_if_asked();

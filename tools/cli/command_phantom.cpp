@@ -92,7 +92,7 @@ std::string write_volume(const std::filesystem::path& folder, const std::string&
     return header.string();
 }
 
-/// Refuses options that the phantom's kind ignores, so that a missing property does not go unnoticed.
+/// Refuses options that this kind of phantom ignores, so that users notice that their phantom lacks the property.
 void check_use(const PhantomCommandOptions& options)
 {
     const std::string& kind = options.spec.kind;

@@ -92,7 +92,7 @@ void run_view(const ViewCommandOptions& options)
                           .screen_texts = screen_texts ? screen_texts : "",
                           .version = SHVR_VERSION};
     if (!options.size.empty()) wanted.window_size = parse_size(options.size);
-    constexpr std::chrono::milliseconds MOST{700};  // so that the process ends before systems kill it, after a second
+    constexpr std::chrono::milliseconds MOST{700};  // systems kill a process after a second; it must end before that
     const StopRequest stop;
     const StopDeadline deadline(MOST);
     wanted.stop = &stop.flag();

@@ -41,7 +41,7 @@ std::string no_command(const CLI::App& program, const std::string& found)
            "; expected one of " + known + "; see shvr --help";
 }
 
-/// Refuses empty options and names: with an unset variable, a script would otherwise read or write the wrong files.
+/// Refuses empty options and names: if a variable in a script is unset, the script would use the wrong files.
 void refuse_empty(int argc, char** argv)
 {
     for (int i = 1; i < argc; ++i) {

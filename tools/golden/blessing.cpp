@@ -180,7 +180,7 @@ Blessed bless(const Golden& golden, const std::string& reason, const StudioOptio
             blessed.new_hash = "unchanged";
             return blessed;
         }
-        // Keeps the old picture if the new one passes. Otherwise many changes within the class's limits would add up.
+        // Keeps the old picture if the new one passes. Otherwise, many changes within the class's limits could add up.
         if (!why_different(drawn.image, before, golden.strictness))
             png = read_file(golden.picture(), MAX_PICTURE_BYTES);
     }

@@ -54,7 +54,7 @@ std::vector<Golden> goldens_in(const std::filesystem::path& folder, const std::s
 /// Shell patterns: '*', '?', '[ab]'.
 bool matches(const std::string& name, const std::string& pattern);
 
-/// Returns why `actual` does not match `expected`: each limit exceeded, with the value found. Null if they match.
+/// Returns why `actual` does not match `expected`: each exceeded limit, with the value found. Null if they match.
 std::optional<std::string> why_different(const Image8& actual, const Image8& expected, Strictness strictness);
 
 /// Returns the 64-bit FNV-1a hash of a picture's file as 16 digits. Detects accidents, not deliberate changes.

@@ -8,7 +8,7 @@ namespace shvr::golden {
 
 namespace {
 
-/// Whether the device was chosen by `set_environment` instead of the user.
+/// Whether `set_environment` chose the device, and not the user.
 bool is_default_device = false;
 
 /// Creates the renderer. If the user has named no device, an error states that lavapipe is needed.

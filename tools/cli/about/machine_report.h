@@ -17,7 +17,7 @@ namespace shvr::cli {
 struct Missing {
     std::string what, for_what;
     std::string package;     ///< package of Debian and Ubuntu that provides it; empty if none does
-    bool is_needed = false;  ///< true: without it, SHVR cannot draw at all
+    bool is_needed = false;  ///< whether SHVR cannot draw at all without it
 };
 
 struct FolderReport {

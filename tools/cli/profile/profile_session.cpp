@@ -187,7 +187,7 @@ SessionProfile profile_session(const std::string& input, const std::string& scri
         profile.replays.push_back(replay(stage, script, lines, of_copy, tell, [&] { work.stop_if_asked(); }));
     };
     static_cast<void>(work.begin("opening " + input));
-    // The copies come first: a script that fails on one of them has not changed the input itself.
+    // The copies are replayed first: if the script fails on a copy, the input itself is still unchanged.
     const TemporaryFolder folder("shvr-replays");
     if (replays > 1)
         for (const std::filesystem::path& copy : copies_of(input, common, folder.path, replays - 1)) {
