@@ -14,7 +14,7 @@ std::filesystem::path asset_folder(const std::string& name);
 /// has the page, returns the path where an installation would have it.
 std::filesystem::path manual_page();
 
-/// Preferences folder, may be missing: $XDG_CONFIG_HOME/shvr or ~/.config/shvr. Empty if that and $HOME are unset.
+/// Folder of preferences, may be missing: $XDG_CONFIG_HOME/shvr or ~/.config/shvr. Empty if that and $HOME are unset.
 std::filesystem::path config_folder();
 /// Folder of recomputable files: $XDG_CACHE_HOME/shvr or ~/.cache/shvr. Empty if that variable and $HOME are unset.
 std::filesystem::path cache_folder();

@@ -37,7 +37,7 @@ std::optional<mode_t> permissions_of_old_file(const fs::path& path)
     return status.st_mode & 07777;
 }
 
-/// Names of temporary files, for signal handlers to remove. If all slots are taken, handlers miss further files.
+/// Names of temporary files, for signal handlers to remove. If all slots are taken, further files are not removed.
 std::array<std::atomic<const char*>, 64> temporary_names{};
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
@@ -69,7 +69,7 @@ std::string host_of_names()
     return safe.empty() ? "host" : safe;
 }
 
-/// Process and host named in the temporary file name ".shvr-PID-N-HOST.tmp". Files of earlier versions name no host.
+/// Process and host stated in a temporary file's name, ".shvr-PID-N-HOST.tmp". Names by earlier versions lack the host.
 struct Owner {
     pid_t process = 0;
     std::string host{};  ///< empty: not stated

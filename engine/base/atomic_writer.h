@@ -30,7 +30,7 @@ void collect_temporary_files(const std::filesystem::path& folder);
 /// The product, or null if it exceeds 2^63 - 1.
 std::optional<int64_t> multiplied(int64_t a, int64_t b);
 /// Fails, stating both sizes, if the file's disk has less free space than `bytes` (null: more than 2^63 - 1). Does
-/// nothing if the file system does not state its free space. `remedy` ends the message: "free some of it".
+/// nothing if the file system does not report its free space. `remedy` ends the message: "free some of it".
 void expect_space(const std::filesystem::path& path, std::optional<int64_t> bytes, const char* remedy);
 
 /// Removes the temporary files of all writers that have not committed. Meant for signal handlers: calls only

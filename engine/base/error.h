@@ -1,9 +1,9 @@
 #pragma once
-// Errors caused by the outside world, and checks for our own bugs.
+// Errors caused by the outside world, and checks for bugs in this program.
 //
-// `fail(...)` throws `Error` with one sentence: subject, value found, value expected. Only `main`, the
-// boundary of a job and the application catch it. `SHVR_CHECK` asserts conditions that only a bug of ours can violate;
-// it also works in release builds, prints the claim and the values, and aborts. Any thread may call either.
+// `fail(...)` throws `Error` with one sentence: subject, value found, value expected. Only `main`, the boundary of a
+// job and the application catch it. `SHVR_CHECK` asserts conditions that only a bug can violate; it also works in
+// release builds, prints the claim and the values, and aborts. Any thread may call either.
 
 #include <cstdio>
 #include <cstdlib>

@@ -200,7 +200,7 @@ std::vector<double> flip_map(const Image8& a, const Image8& b, double pixels_per
     SHVR_CHECK(pixels_per_degree > 0.0, pixels_per_degree);
     constexpr size_t PIXELS_TOLD = 1 << 16;
     const Planes ycxcz_a = ycxcz_planes(a), ycxcz_b = ycxcz_planes(b);
-    // Progress counts eight filters per picture; the rest of the work takes about as long as all filters.
+    // Progress counts eight filters per picture. They take half of the time; the rest of the work takes the other half.
     FilterProgress filters(part_of(progress, 0.0, 0.5), 16.0);
     const Planes seen_a = seen(ycxcz_a, pixels_per_degree, filters), seen_b = seen(ycxcz_b, pixels_per_degree, filters);
     const Features features_a = features_of(ycxcz_a[0], pixels_per_degree, filters);

@@ -31,7 +31,7 @@ double srgb_decode(double encoded);
 /// Un-premultiplies, clamps to 0..1, encodes as sRGB and rounds to nearest; does not encode alpha. A pixel whose alpha
 /// rounds to 0 becomes 0,0,0,0. NaN becomes 0; `count_not_finite` reports whether there is any.
 Image8 to_image8(const ImageF& image);
-/// Converts pixels like `to_image8`; both spans have the same number of pixels.
+/// Converts pixels as `to_image8` does; both spans must hold the same number of pixels.
 void encode_pixels(std::span<const float> light, std::span<uint8_t> encoded);
 
 /// Counts values (not pixels) that are NaN or infinite. Any such value is a defect, which the caller reports.

@@ -26,8 +26,8 @@ inline constexpr int64_t MAX_IMAGE_SIDE = 65536;
 /// otherwise (gAMA chunk); then libpng converts them, approximating the sRGB curve by a power of 2.2 (up to 9 levels
 /// off near black, 2 in the middle).
 Image8 read_png(const std::filesystem::path& path);
-/// Texts in a picture file, in UTF-8, each with its keyword (1 to 79 Latin letters and single spaces). They are written
-/// compressed (iTXt), before the pixels. Each has at most MAX_PICTURE_TEXT bytes.
+/// Texts in a picture file, in UTF-8, each with its keyword (1 to 79 Latin letters and single spaces). The texts are
+/// written compressed (iTXt), before the pixels. Each text has at most MAX_PICTURE_TEXT bytes.
 using PictureTexts = std::vector<std::pair<std::string, std::string>>;
 inline constexpr size_t MAX_PICTURE_TEXT = size_t{16} << 20;
 /// Returns the first text with `keyword` (iTXt, zTXt or tEXt) before the pixels; null if there is none or the file is

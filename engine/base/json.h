@@ -109,7 +109,7 @@ public:
     }
     std::string dump() const;  ///< serialized as JSON without spaces
 
-    // The functions below return the value, or `fallback` if it is missing.
+    // The functions below return the value or, if the value is missing, `fallback`.
     double number(double fallback, const NumberRange& range) const { return exists() ? number(range) : fallback; }
     int64_t whole(int64_t fallback, int64_t lower, int64_t upper) const
     {

@@ -68,7 +68,7 @@ void WorkPool::wait(const std::shared_ptr<Batch>& batch)
         polled_ = std::chrono::steady_clock::now();
         lock.lock();
         if (!failure) continue;
-        // Drops the tasks not yet started: the caller may free what they use.
+        // Drops the tasks not yet started: once this call has failed, the caller may free what tasks use.
         batch->end = std::min(batch->end, batch->next);
         finished_.wait(lock, is_finished);
         std::rethrow_exception(failure);

@@ -248,7 +248,7 @@ private:
 
     bool do_read(std::unique_lock<std::mutex>& lock, int64_t layer, int64_t read)
     {
-        // Shared slices are copied from the previous layer, which must be complete and not change during the copy.
+        // Slices shared with the previous layer are copied from it; it must be complete and must not change meanwhile.
         changed_.wait(lock, [&] {
             const bool slab_is_free = layer < 2 || rows_done_[size_t(layer - 2)] == rows_per_layer_;
             const bool before_is_read = layer == 0 || reads_done_[size_t(layer - 1)] == read_count(layer - 1);

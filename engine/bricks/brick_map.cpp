@@ -49,7 +49,7 @@ void BrickMap::set(const BrickKey& key, uint32_t number)
     entry = {word_of(key), number};
 }
 
-/// Moves later entries, which searches could no longer find, into the gap (Knuth, TAOCP 3, 6.4, algorithm R).
+/// Moves later entries into the gap if searches could no longer find them (Knuth, TAOCP 3, 6.4, algorithm R).
 void BrickMap::erase(const BrickKey& key)
 {
     if (!contains(key)) return;

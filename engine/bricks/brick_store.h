@@ -43,7 +43,7 @@ public:
     void want(std::vector<BrickKey> keys);
     /// Returns up to `most` wanted bricks that are ready, without waiting; each brick once per call of want().
     std::vector<Finished> take(size_t most);
-    /// Waits until a brick can be taken; returns false if no more bricks will arrive.
+    /// Waits until take() has a brick to return; returns false if no more bricks will arrive.
     bool wait();
     /// Returns one brick. If the store lacks it, reads it now on this thread. Null if the brick cannot be read.
     Texels get(const BrickKey& key);

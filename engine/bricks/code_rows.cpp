@@ -77,7 +77,7 @@ CodeRows::CodeRows(VoxelType type, const IntensityWindow& window)
                 window.codes_per_unit == std::floor(window.codes_per_unit) && window.codes_per_unit >= 1.0 &&
                 window.codes_per_unit <= 65535.0)
 {
-    // If the whole window is outside the range of voxel values, its bounds do not fit the voxel type.
+    // If the whole window is outside the range of the voxel type, its bounds cannot be converted to that type.
     const auto ends_within = [&]<class T>(T) {
         return window.lower <= double{std::numeric_limits<T>::max()} &&
                window.upper() >= double{std::numeric_limits<T>::min()};

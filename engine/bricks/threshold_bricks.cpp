@@ -68,7 +68,7 @@ std::vector<uint32_t> ThresholdBricks::bits_in(const VoxelBox& box, double thres
     if (reading_.valid()) {
         try {
             take_reading();
-        } catch (const Error&) {  // a later read, if the brick is still needed, reports the failure
+        } catch (const Error&) {  // if the brick is still needed, a later read reports the failure
         }
     }
     if (kept_.size() + missing(box, threshold).size() > MAX_BRICKS) kept_.clear();

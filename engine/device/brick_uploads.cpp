@@ -41,7 +41,7 @@ void write_codes(const BrickTexels& texels, const glm::ivec3& begin, const glm::
 
 void BrickUploads::stage(const Target& target, const BrickTexels& texels)
 {
-    if (targets_.size() == batch_) flush();  // the buffer is full here only if flush() failed when it was filled
+    if (targets_.size() == batch_) flush();  // if the buffer is full here, flush() failed when the buffer was filled
     Staging& staging = staging_[filling_];
     if (staging.copy) static_cast<void>(staging.copy.finish());
     std::byte* bytes = staging.bytes.mapped().data();

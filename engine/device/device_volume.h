@@ -109,7 +109,7 @@ public:
     virtual Feedback request_feedback(FrameGraph& graph, const VolumeBinding& volume) const = 0;
     /// `result`: the result of that graph.
     virtual void take_feedback(const Feedback& feedback, const gpu::FrameResult& result) = 0;
-    /// Discards earlier visits, so that only the next picture decides which bricks are needed.
+    /// Discards earlier visits, so that only the next picture determines which bricks are needed.
     virtual void forget_visits() = 0;
     /// Sets whether rays stop and wait at bricks that are not on the device (engine/passes/raycast.h, RaysInWaiting).
     /// If they do, only the bricks that rays wait for count as visited, and earlier visits are discarded. Rays never
@@ -165,7 +165,7 @@ public:
     virtual int levels() const = 0;
     /// Slots of the atlas along each axis.
     virtual glm::uvec3 atlas_slots() const = 0;
-    /// Every brick on the device, and a revision number that changes with this list.
+    /// All bricks on the device, and a revision number that changes whenever this list changes.
     virtual std::vector<Place> places() const = 0;
     virtual uint64_t places_revision() const = 0;
     /// The volume's handles for kernels that work on a region of level 0.

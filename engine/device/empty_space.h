@@ -16,11 +16,11 @@ public:
     /// Sets the look for which the grid is built. The members `changed` and `mask` of `look` are ignored.
     void want(const LeapGridInput& look, const glm::uvec3& cell_counts);
 
-    /// is_due(): some work must precede the next picture. is_worth_refining(): some work can follow the next picture.
+    /// is_due(): work must be done before the next picture. is_worth_refining(): other work can be done after it.
     bool is_due() const { return look_ && (!holds_ || !patch_.empty()); }
     bool is_worth_refining() const { return look_ && holds_ && stage_ < LEAP_STAGES; }
-    /// Each function adds one pass of its kind of work. Call it only while such work is left. If the graph is then not
-    /// submitted, the whole grid is rebuilt.
+    /// Each function adds one pass of the work that prepares or refines the grid. Call it only while there is such
+    /// work. If the graph is not submitted afterwards, the whole grid is rebuilt.
     void prepare(FrameGraph& graph, VolumeBinding& volume, LeapGridInput look);
     void refine(FrameGraph& graph, VolumeBinding& volume, LeapGridInput look);
 

@@ -26,8 +26,8 @@ uint64_t slice_bytes(uint32_t bricks)
     return bytes;
 }
 
-/// Number of bricks to update at once. Their scratch memory is at most a sixteenth of the budget. On a CPU, a few
-/// bricks keep all cores busy and stay in the caches.
+/// Number of bricks to update at once, such that their scratch memory is at most a sixteenth of the budget. On a CPU, a
+/// few bricks keep all cores busy and stay in the caches.
 uint32_t slice_for(const gpu::DeviceTraits& traits, uint64_t device_budget)
 {
     const uint64_t most = traits.is_cpu ? gpu::OCCLUSION_COLUMN : gpu::OCCLUSION_SLICE;
@@ -279,7 +279,7 @@ bool Occlusion::has_all_around(const BrickKey& key) const
     return !is_missing;
 }
 
-/// Called for every brick after a change, so cheap checks come first.
+/// This function is called for every brick after a change, so cheap checks come first.
 bool Occlusion::is_candidate(const BrickKey& key, Entry& entry)
 {
     ++counts_.walks;
@@ -333,7 +333,7 @@ bool Occlusion::is_due()
 /// Queues bricks of a single level: the level of the nearest brick.
 void Occlusion::fill_queue(const glm::dvec3& eye)
 {
-    /// Maximum length of the queue: enough for the next slices without scanning all bricks again.
+    /// Maximum length of the queue: enough for several slices without another scan of all bricks.
     constexpr size_t MOST = size_t{4} * gpu::OCCLUSION_SLICE;
     queued_ = cause();
     queued_eye_ = eye;

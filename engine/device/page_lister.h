@@ -115,7 +115,7 @@ public:
     bool get_ready(const PageView& view, const Visibility& visibility);
     /// Waits for the list and returns it. Fails if the source failed while the list was made.
     std::shared_ptr<PageList> take(const PageView& view, const Visibility& visibility);
-    /// Puts a taken list back into the cache.
+    /// Puts a list that take() returned back into the cache.
     void keep(std::shared_ptr<PageList> list);
     /// Marks all lists as out of date, because the source or the paint has changed.
     void forget();

@@ -89,7 +89,7 @@ PagedVolume::PagedVolume(gpu::Executor& executor, gpu::Memory& memory, std::shar
     pin_coarse_levels();
 }
 
-/// Loads the coarsest level, or starts loading it, so that the first picture is early. Requests the next levels.
+/// Loads the coarsest level, or starts loading it, so that the first picture appears early. Requests the next levels.
 void PagedVolume::pin_coarse_levels()
 {
     check_coarsest(info(), levels_, options_.codes, slots_.count());
@@ -175,7 +175,7 @@ void PagedVolume::install(std::shared_ptr<PageList> list)
     is_reached_.assign(tree().leaves.size(), false);
     was_reached_.assign(tree().leaves.size(), false);
     awaited_.clear();
-    // Bricks that were needed a moment ago are likely to be needed again.
+    // Bricks needed in the previous view are likely to be needed again.
     for (const uint32_t leaf : std::exchange(visited_, {})) {
         if (!before || is_other_look) break;
         if (const std::optional<uint32_t> now = leaf_of(before->tree->leaves[leaf].key)) visit(*now, !is_same_view);

@@ -57,7 +57,7 @@ public:
     void look_by(const Visibility& visibility) override;
     bool has_view() const override { return list_ != nullptr; }
     int finest_level() const override { return list_ ? list_->tree->finest_level : 0; }
-    /// All preparation depends on the view, so prepare() does it.
+    /// prepare() does all preparation, since it depends on the view.
     std::optional<FrameGraph> next_preparation(const Visibility&, const DeviceMask&) override { return std::nullopt; }
     std::optional<FrameGraph> next_refinement(const Visibility&, const DeviceMask&) override { return std::nullopt; }
     bool refinement_is_due() const override { return false; }

@@ -15,7 +15,7 @@
 
 namespace shvr {
 
-/// Encodes bricks in index order on a background thread. A short queue passes the batches to the uploading thread.
+/// Encodes bricks in index order on a background thread, and passes batches to the uploading thread in a short queue.
 class ResidentVolume::Builder {
 public:
     struct Brick {
@@ -171,7 +171,7 @@ void ResidentVolume::create_images()
     for (gpu::Storage& scratch : leap_scratch_) scratch = create("leap scratch", shape->cells);
 }
 
-/// A brick at a face of the volume also fills the atlas's border at that face.
+/// A brick at a face of the volume also fills the part of the atlas's border next to that face.
 void ResidentVolume::upload(const BrickTexels& texels, const glm::uvec3& brick)
 {
     const glm::uvec3 border = gpu::code_border(), none(0);

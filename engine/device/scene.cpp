@@ -43,7 +43,7 @@ bool filters(const gpu::DeviceTraits& traits, Sampling sampling)
     if (sampling == Sampling::hardware && !traits.linear_r16)
         fail("render.sampling is hardware, but device ", traits.name,
              " cannot filter R16_UNORM; expected automatic or exact");
-    // Filtering on a CPU costs more than loading and computing; a GPU's sampler is nearly free.
+    // On a CPU, filtering costs more than loading and computing; on a GPU, the sampler is nearly free.
     return sampling == Sampling::hardware || (sampling == Sampling::automatic && !traits.is_cpu && traits.linear_r16);
 }
 
@@ -321,7 +321,7 @@ bool Scene::show(const Document& document, std::span<const Change> changes)
 
 void Scene::show(const Document& document, const Touched& touched, const std::optional<VoxelBox>& within)
 {
-    // The fallible steps come last, so no change is lost if they fail.
+    // Steps that can fail come last, so that a failure loses no change.
     if (!touched.raised.empty()) note_density(document.density, touched.raised);
     if (!touched.mask_bricks.empty()) update_mask(document.mask, touched.mask_bricks, within);
     renew_density();

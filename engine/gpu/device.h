@@ -68,7 +68,7 @@ struct DeviceTraits {
     VkPhysicalDeviceLimits limits{};
     uint64_t max_allocation_bytes = 0;  ///< limit of one buffer or image, since each needs one contiguous allocation
     uint64_t max_buffer_bytes = 0;
-    uint64_t max_volume_bytes = 0;     ///< limit of a 3-D image of codes; never above max_allocation_bytes
+    uint64_t max_volume_bytes = 0;     ///< limit of a 3-D image of voxel codes; at most max_allocation_bytes
     bool tells_memory_left = false;    ///< VK_EXT_memory_budget
     bool tells_faults = false;         ///< VK_EXT_device_fault
     bool has_memory_priority = false;  ///< VK_EXT_memory_priority
@@ -113,7 +113,7 @@ public:
     /// Like gpu::check, for calls that can report a lost device: the message includes the driver's fault report.
     void check(VkResult result, const char* call) const;
 
-    /// Waits for all submitted work. wait_idle_or_lost() is for callers that cannot report a failure.
+    /// Waits for all submitted work. wait_idle_or_lost() is for callers that cannot handle a failure.
     void wait_idle();
     void wait_idle_or_lost() noexcept;
 

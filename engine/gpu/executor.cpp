@@ -47,7 +47,7 @@ Storage& Executor::take_transient(const std::string& name, const ResourceDesc& w
 {
     ResourceDesc desc = wanted;
     if (placement != Placement::device) desc.bytes = rounded(desc.bytes);
-    // Takes the least recently used suitable buffer. All buffers needed at peak load thus stay in use, instead of being
+    // Takes the least recently used suitable buffer. So all buffers needed at peak load stay in use, instead of being
     // freed and created again.
     Transient* found = nullptr;
     for (const auto& transient : transients_) {

@@ -71,7 +71,7 @@ public:
     /// Returns whether the device has finished the frame; never waits.
     bool done() const;
     void wait() const;
-    /// Waits for the frame if necessary, and leaves this object empty.
+    /// Waits for the frame if necessary, and returns its result; this object is then empty.
     FrameResult finish();
     const FrameGraph& graph() const;
 

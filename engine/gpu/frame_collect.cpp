@@ -47,7 +47,7 @@ void Submission::Frame::submit()
             for (Memory::Object* image : transitioned) image->in_general_layout = true;
     }
     number = device.note_submission();
-    // Barriers are global, so they also affect the states of imports that no remaining pass uses.
+    // Barriers are global, so they also affect imported resources that no remaining pass uses.
     for (uint32_t i = 0; i < compiled.final_states.size(); ++i)
         if (compiled.used[i] || graph.resources()[i].imported) object(i).state = compiled.final_states[i];
 }
@@ -62,7 +62,7 @@ void Submission::Frame::note_unknown_states() const
 bool Submission::Frame::done() const
 {
     if (number == 0 || number <= executor.device_.done()) return true;
-    // Returns the fence's status like vkGetFenceStatus, but lets the validation layer see that the host waited.
+    // Returns the fence's status like vkGetFenceStatus, in a way that shows the validation layer that the host waited.
     const VkFence fence = objects->fence();
     const VkResult result = vkWaitForFences(executor.device_.handle(), 1, &fence, VK_TRUE, 0);
     executor.device_.check(result, "vkWaitForFences");

@@ -85,7 +85,7 @@ public:
     Kernels(const Kernels&) = delete;
     Kernels& operator=(const Kernels&) = delete;
 
-    /// Returns a kernel; waits if the worker is compiling it. The error message lists the known kernels or constants.
+    /// Returns a kernel; if the worker is compiling it, waits. Errors list the known kernels or constants.
     const Kernel& get(const std::string& name, const std::vector<std::pair<std::string, uint32_t>>& constants);
     const KernelInterface& interface(const std::string& name);
     /// Hints that these kernels will probably be needed. The worker compiles them if the device option `looks_ahead` is

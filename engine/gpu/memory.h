@@ -117,7 +117,7 @@ public:
     /// Frees released memory that is no longer in use.
     void collect() noexcept;
 
-    // Released memory counts as free. An allocation that needs released memory waits until the device is done with it.
+    // Released memory counts as free, although an allocation that needs it must wait until the device is done with it.
     uint64_t device_bytes() const { return device_bytes_ - retired_device_bytes_; }
     uint64_t host_bytes() const { return host_bytes_ - retired_host_bytes_; }
     uint64_t peak_device_bytes() const { return peak_device_bytes_; }

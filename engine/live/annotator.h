@@ -36,7 +36,7 @@ WorkFiles with_kept_settings(WorkFiles files, const Session& session, const std:
 
 class Annotator {
 public:
-    /// Maximum number of retries when memory runs out: about 5 s with the pauses of a user's window.
+    /// Maximum number of retries after memory runs out: about 5 s, with the pauses that a window makes.
     static constexpr int MAX_TRIES = 20;
 
     /// Starts new work, without any paint. The volume must be loaded.
@@ -45,7 +45,7 @@ public:
     Annotator(Renderer& renderer, std::unique_ptr<Work> work);
 
     /// For saving, file names and the trace's selection. To change annotations, use the functions below, which also
-    /// show the change on the device. They succeed even if memory is too short to show a change: see `is_behind`.
+    /// show the change on the device. They do not fail if memory is too short to show a change: see `is_behind`.
     Work& work() { return *work_; }
     const Work& work() const { return *work_; }
     /// Releases the work to another annotator. This annotator must not be used afterwards.

@@ -29,7 +29,7 @@ void clear_row(int64_t from, int64_t to, uint32_t* words)
 
 void clear_outside(const CutBox& cut, RelevanceBits& bits)
 {
-    // The centre of voxel i of a level lies at (i + 0.5) times the level's voxel width.
+    // The centre of a level's voxel i lies at (i + 0.5) times the width of the level's voxels.
     const double width = std::ldexp(1.0, bits.level);
     const Size3 size = bits.box.size();
     const auto first_beyond = [&](const glm::dvec3& plane) {

@@ -50,7 +50,7 @@ FeltLimits limits_of_groups(const std::vector<uint8_t>& groups);
 void limit_to_seen(const Look& look, const Camera& camera, const VolumeInfo& volume, const IntensityWindow& window,
                    double threshold, FeltLimits& limits);
 
-/// Returns the intensities with opacity above 0. Intensities outside the window are shown like its nearer end.
+/// Returns the intensities with opacity above 0. Intensities outside the window have the opacity of its nearer end.
 IntensityIntervals shown_intensities(const TransferFunction& function, const IntensityWindow& window);
 
 /// Clears the bits of voxels that cannot be felt, except voxels excluded by intensity alone (relevance_on_host clears

@@ -175,7 +175,7 @@ void RelevanceMirror::turn(uint64_t now_ns)
         waiting_for_.reset();
         set_wanted({});
     } else {
-        // Keeps the pending request as long as its cube still suffices.
+        // Keeps the pending request as long as the requested cube still suffices.
         const bool still_does = waiting_for_ && waiting_for_->threshold == best.threshold &&
                                 waiting_for_->settings == best.settings && waiting_for_->voxels == best.voxels &&
                                 waiting_for_->place.covers(wish.point + wish.travel(), wish.radius);
@@ -190,7 +190,7 @@ void RelevanceMirror::turn(uint64_t now_ns)
             return declined_ == waiting_for_;
         }();
         const bool may_try = failed_ns_ == 0 || now_ns - failed_ns_ >= TROUBLE_NS;
-        // The device gets more time as long as the held cube leaves enough margin around the ball.
+        // Gives the device more time as long as the held cube leaves enough margin around the ball.
         const bool is_urgent = !suits || !held_.place.covers(wish.point + wish.travel(), wish.radius);
         const uint64_t patience_ns = is_urgent ? DEVICE_NS : 4 * DEVICE_NS;
         if (may_try && (!asks_device || is_declined || now_ns - waiting_since_ns_ >= patience_ns))

@@ -29,7 +29,7 @@ public:
     /// Submits due work for another `ahead_ms` of device time, so that the device stays busy while this thread waits
     /// that long for something else.
     void submit_ahead(double ahead_ms);
-    /// While held, up-to-date panes are not made sharper, since they would request bricks of their own and displace
+    /// While held, up-to-date panes are not made sharper: that would request bricks for these panes, and displace
     /// bricks that another picture waits for. The hold ends when a pane has to follow the user.
     void hold(bool is_held) { is_held_ = is_held; }
     bool is_held() const { return is_held_; }

@@ -467,7 +467,7 @@ bool View::submit_tiles()
     const glm::uvec2 size = part.end - part.begin;
     FrameGraph graph;
     const Import light_of_strip = strip_light(size);
-    // The light of other tiles is imported as well, so that barriers cover earlier graphs' accesses to it.
+    // Imports the light of the other tiles as well, so that barriers cover accesses to it by earlier graphs.
     for (const gpu::Storage& other : strips_)
         if (other && other.import().id != light_of_strip.id)
             static_cast<void>(graph.import("light of other tiles", other.import()));

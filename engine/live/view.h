@@ -93,7 +93,7 @@ public:
     /// Returns the layers combined, as a screen would show them. Waits for the device.
     Image8 read_back();
 
-    /// Device time of one pass in the current picture, or in the last one if the current has none.
+    /// Device times of one pass since the current picture's first sketch was started.
     struct PassTime {
         std::string name;
         uint64_t runs = 0;

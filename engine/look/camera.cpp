@@ -157,8 +157,8 @@ RayPlanes ray_planes(const Camera& camera, const glm::uvec2& pixels, const Volum
     const Sphere sphere = bounding_sphere(volume);
     const bool is_perspective = camera.projection == Camera::Projection::perspective;
 
-    // Points on the view axis, the line through eye and target, are computed from whichever of these two is closer to
-    // the volume, since the coordinates of a point far away are rounded more coarsely.
+    // Points on the view axis, the line through eye and target, are computed from the eye or the target, whichever is
+    // closer to the volume, since the coordinates of a point far away are rounded more coarsely.
     const bool anchor_is_eye = glm::distance(camera.eye, sphere.centre) <= glm::distance(camera.target, sphere.centre);
     const glm::dvec3 anchor = anchor_is_eye ? camera.eye : camera.target;
     const double anchor_depth = anchor_is_eye ? 0.0 : glm::distance(camera.eye, camera.target);

@@ -62,7 +62,7 @@ public:
         for (size_t i = 0; i < points.size(); ++i)
             line(points[i], points[(i + 1) % points.size()], color, false, width);
     }
-    /// Returns the strokes, preceded by the halos of all of them, so that no halo covers another stroke.
+    /// Returns all strokes, preceded by their halos, so that no halo covers another stroke.
     std::vector<Stroke> taken()
     {
         std::vector<Stroke> all;
@@ -176,7 +176,7 @@ void add_probe(Strokes& strokes, const Camera& camera, const glm::uvec2& pixels,
     if (const auto at = project(camera, pixels, probe.center)) {
         way = at->pixel - 0.5 * glm::dvec2(pixels);
         const glm::dvec2 inside = glm::abs(way) - 0.5 * glm::dvec2(pixels);
-        if (inside.x < 0.0 && inside.y < 0.0) return;  // in view: the ball covers the whole pane or contains the eye
+        if (inside.x < 0.0 && inside.y < 0.0) return;  // in view, if the ball covers the whole pane or contains the eye
     }
     if (glm::length(way) > 1e-9) add_arrow(strokes, pixels, way, probe.color);
 }

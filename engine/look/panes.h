@@ -95,8 +95,8 @@ SliceSettings slices_zoomed(const SliceSettings& slices, const Pane& slice, cons
 /// Moves the centre of all slices, so that `slice` follows a mouse motion of `way` pixels.
 SliceSettings slices_moved(const SliceSettings& slices, const Pane& slice, const glm::dvec2& way,
                            const VolumeInfo& volume, const glm::dvec3& probe_voxel);
-/// Moves slices along each axis along which the probe has left a slice's visible part. `held` is the index of the pane
-/// under the mouse, whose slice does not move while the probe is visible in it.
+/// Moves the slices along an axis if the probe has left the visible part of a slice along this axis. `held` is the
+/// index of the pane under the mouse, whose slice does not move while the probe is visible in it.
 SliceSettings slices_following(const SliceSettings& slices, const std::vector<Pane>& panes, std::optional<size_t> held,
                                const VolumeInfo& volume, const glm::dvec3& probe_voxel);
 

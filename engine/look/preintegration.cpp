@@ -30,7 +30,7 @@ double between(double from, double to, double share)
 double mean_extinction(double from, double to)
 {
     const double a = 1.0 - from, b = 1.0 - to;
-    // The closed form cancels for nearly equal opacities; there, Simpson's rule has a relative error below 1e-13.
+    // For nearly equal opacities, the closed form loses digits; there, Simpson's rule has a relative error below 1e-13.
     if (std::abs(a - b) <= 1e-3 * std::max(a, b))
         return (extinction_of(from) + 4.0 * extinction_of(0.5 * (from + to)) + extinction_of(to)) / 6.0;
     const auto integral = [](double u) { return u > 0.0 ? u - u * std::log(u) : 0.0; };
@@ -107,7 +107,7 @@ glm::dvec4 step_between(const Integrals& sums, double step, uint32_t front, uint
         light += through * opacity * color;
         through *= 1.0 - opacity;
     }
-    // Small opacities would cancel in 1 - through, so the opacity is computed from the optical depth.
+    // For small opacities, 1 - through loses digits, so the opacity is computed from the optical depth.
     return glm::dvec4(light, -std::expm1(-depth_between(sums, step, front, back)));
 }
 

@@ -1,7 +1,7 @@
 #pragma once
-// The surfaces of a scene, with cheap changes of a few at a time. A large hierarchy of boxes only loses surfaces; it is
-// followed by a small hierarchy of the surfaces added since, which is rebuilt on each change. A search continues from
-// the large one into the small one, so kernels see a single hierarchy. Plain data; one thread at a time.
+// The surfaces of a scene, with cheap changes of a few at a time. Surfaces are only removed from a large hierarchy of
+// boxes; surfaces added since are in a small hierarchy, which follows and is rebuilt on each change. A search continues
+// from the large hierarchy into the small one, so kernels see one hierarchy. Plain data; one thread at a time.
 
 #include <cstdint>
 #include <span>

@@ -68,7 +68,7 @@ float guard_of_sample_bits(const glm::uvec3& cell_counts)
 void sample_bits(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input)
 {
     if (!volume.sample_bits) return;
-    // The neighbours of a changed cell read its voxels, and whether it is empty.
+    // A cell next to a changed cell reads the changed cell's voxels, and whether that cell is empty.
     const CellBox cells{input.changed.begin - glm::min(input.changed.begin, glm::uvec3(1)),
                         glm::min(input.changed.end + 1u, volume.cell_counts)};
     Pass pass = graph.compute("sample_bits");

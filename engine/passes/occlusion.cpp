@@ -114,8 +114,8 @@ OcclusionTaps occlusion_taps_of(const glm::dvec3& spacing, double radius, bool i
 
 uint32_t occlusion_reach(double radius)
 {
-    // Every tap lies within `radius` of the point where its ray starts. The other 4 voxels cover the voxel itself and
-    // the distance from it to the start.
+    // Every tap lies within `radius` of the ray's start. The other 4 voxels are for the voxel itself and for the
+    // distance from the voxel to the ray's start.
     return std::max(1u, uint32_t(std::ceil((radius + 4.0) / gpu::BRICK_SIZE)));
 }
 

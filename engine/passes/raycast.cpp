@@ -72,7 +72,7 @@ std::vector<std::byte> bytes_of(const RaycastOcclusion& occlusion)
     return bytes;
 }
 
-/// Below this step, in reference lengths, sums use compensation: plain sums have an error of 1.5e-7 / step.
+/// For shorter steps (in reference lengths), sums use compensation: plain sums have an error of 1.5e-7 / step.
 constexpr float MIN_PLAIN_STEP = 0.05f;
 
 /// The inputs that select the kernel and its constants.

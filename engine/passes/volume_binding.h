@@ -55,8 +55,8 @@ inline std::vector<std::pair<std::string, uint32_t>> constants_of_codes(const Vo
     return constants;
 }
 
-/// Binds the atlas to a kernel that supports stacked images. Bindings without a further image get the first image,
-/// which kernels never read through these bindings.
+/// Binds the atlas to a kernel that supports stacked images. If the atlas has fewer images than bindings, the other
+/// bindings get the first image, which kernels never read through these bindings.
 inline void bind_stacked_atlas(Pass& pass, const VolumeBinding& volume)
 {
     pass.read("atlas", volume.atlas);

@@ -141,8 +141,8 @@ PreviewSeen draw_preview(FrameGraph& graph, const RaycastInput& input, const Ray
     return preview(graph, wanted);
 }
 
-/// Draws the volume and its contents. A preview is computed before the volume's rays are cast, so that rays can end at
-/// previewed voxels, and is then drawn over the picture.
+/// Draws the volume and its contents. A preview is computed before the volume's rays are cast, so that the rays can end
+/// at previewed voxels; the preview is then drawn over the picture.
 Resource draw_contents(FrameGraph& graph, Scene& scene, Prepared& prepared, RaycastInput input, const Camera& camera,
                        const PicturePart& part, Resource target, const WaitingRays* rays, size_t which)
 {

@@ -86,8 +86,8 @@ std::string cut_short_sentence(uint64_t rays, const Look& look);
 /// Returns whether draw() and look_at() could run without waiting for the list of bricks that the view needs. If they
 /// could not, starts making the list in the background; call again later.
 bool get_ready(Scene& scene, const Look& look, const Shot& shot, const PicturePart& part);
-/// Sets the volume's view, as draw() does. Returns the distance between samples, in reference lengths; it is larger if
-/// the view uses coarse bricks.
+/// Sets the volume's view, as draw() does. Returns the distance between samples, in reference lengths; the distance is
+/// larger if the view uses coarse bricks.
 double look_at(Scene& scene, const Look& look, const Shot& shot, const PicturePart& part);
 
 /// Returns one short graph of work that must precede drawing parts of this look; null if none is left. Submit the graph

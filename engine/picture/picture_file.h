@@ -22,7 +22,7 @@ public:
                 const RenderOptions& options, const PictureTexts& texts = {}, Over over = {});
 
     bool is_drawn() const { return job_.is_done(); }
-    /// Returns whether the worker is busy, so that commit() or a step that completes a band would have to wait for it.
+    /// Returns whether the worker is busy, in which case commit() or a step that completes a band would wait for it.
     bool is_writing() const;
     /// Like PictureJob::step; also fails if rows cannot be written.
     void step(bool waits = true) { job_.step(waits); }

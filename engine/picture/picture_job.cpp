@@ -418,7 +418,7 @@ bool PictureJob::draw_waiting(bool waits)
             append(rounds_->passes, draw(rounds_->part, &*rounds_->rays));
             if (!volume.has_rays_waiting()) return true;
             if (rounds_->waits_for_light && !volume.limit_visits(scene().occlusion().reach())) {
-                // If no ray can advance, rays continue with the light so far; the picture is incomplete.
+                // If no ray can advance, let rays continue with incomplete light, and mark the picture as incomplete.
                 note_limited();
                 volume.let_rays_wait(false);
                 volume.want_around({});
@@ -432,7 +432,7 @@ bool PictureJob::draw_waiting(bool waits)
     }
 }
 
-/// Warns that the ambient light of a single brick needs more bricks than fit.
+/// Adds a warning that the ambient light of a single brick needs more bricks than fit on the device.
 void PictureJob::note_limited()
 {
     picture_.complete = false;

@@ -95,9 +95,9 @@ public:
     Picture render(const Session& session, const Camera& camera, const RenderOptions& options = {});
     /// Returns the point visible at a pixel. Samples along the pixel's ray form runs: a run ends where opacity has
     /// fallen to a quarter of its maximum in the run and then doubles. The point lies in the run that contributes most
-    /// to the ray's opacity, at the sample that contributes most (after Wiebel et al. 2012, "WYSIWYP: What You See Is
-    /// What You Pick"). A surface that ends the ray is a run of its own. Null if no run contributes enough to be
-    /// visible (PICK in shaders/raycast.h). `probe`: drawn as in the picture. Waits for the device.
+    /// to the ray's opacity, at the sample of this run that contributes most (after Wiebel et al. 2012, "WYSIWYP: What
+    /// You See Is What You Pick"). A surface that ends the ray is a run of its own. Null if no run contributes enough
+    /// to be visible (PICK in shaders/raycast.h). `probe`: drawn as in the picture. Waits for the device.
     struct Seen {
         glm::dvec3 point{0.0};  ///< volume space
         double opacity = 0.0;   ///< total opacity of the ray

@@ -32,8 +32,8 @@ struct RegionWish {
 /// mirror runs, then one picture for the pass. Simulations assume this time.
 inline constexpr double WINDOW_LATENCY_S = 0.024;
 
-/// Whether to request another region. `held`: the current one, with `covers(centre, radius)`. `margin`: half its side
-/// minus the ball's radius. At rest: when half of the margin is used up. In motion: before the answer would be late.
+/// Whether to request another region. `held`: the current region, with `covers(centre, radius)`. `margin`: half its
+/// side minus the ball's radius. At rest: once half of the margin is used up. In motion: early enough for the answer.
 template <class Place>
 bool is_region_due(const Place& held, const RegionWish& wish, double margin)
 {

@@ -68,7 +68,7 @@ public:
     std::string take_clipboard() { return services_.reader.take_clipboard(); }
     /// Sets whether the user holds a control. Meanwhile, changes of settings make no history step: a drag is one step.
     void set_hand_down(bool is_down) { services_.settings.set_hand_down(is_down); }
-    /// Sets the number of pixels per unit of the interface, which lines and labels over pictures need.
+    /// Sets the number of pixels per unit of the interface, for lines and labels over pictures.
     void set_units(double units) { services_.photographer.set_units(units); }
     /// Sets whether the device is idle. Large screenshots make progress only while it is.
     void set_still(bool is_still) { services_.photographer.set_still(is_still); }
@@ -91,7 +91,7 @@ public:
     bool has_work() const;
     /// Returns whether the journal on disk lacks changes of the view, the probe or similar settings.
     bool has_view_to_keep() const { return services_.settings.has_view_to_keep(); }
-    /// Returns whether a picture exists that does not show the last changes yet.
+    /// Returns whether there is a picture that does not show the last changes yet.
     bool is_stirring() const { return services_.viewer.is_stirring(); }
     /// Returns whether the open document may be closed; call this once a frame. Saves all work as Save does; if only
     /// the view changed, saves it without a message. Read-only work is not saved, as a message has told the user

@@ -28,7 +28,7 @@ struct JoinedRows {
 template <class... Joined, class... Rows, class... Tables>
 struct JoinedRows<std::tuple<Joined...>, std::tuple<Rows...>, Tables...>
     : JoinedRows<std::tuple<Joined..., Rows...>, Tables...> {};
-/// A tuple of the rows of all tables, in the order in which actions are listed.
+/// A tuple of the rows of all the tables above, in the order in which actions are listed to users.
 using ActionRows =
     JoinedRows<std::tuple<>, std::remove_const_t<decltype(LOOKING_ACTIONS)>,
                std::remove_const_t<decltype(SETTINGS_ACTIONS)>, std::remove_const_t<decltype(PROBE_ACTIONS)>,

@@ -43,7 +43,7 @@ Fields::Visit with_op(std::string& op, const Fields::Visit& arguments)
     };
 }
 
-/// Returns the action whose struct has the index `index`, with the arguments read from the line.
+/// Returns the action whose struct has the index `index` in the tables, with the arguments read from the line.
 template <size_t INDEX = 0>
 Action read_kind(size_t index, std::string& id, const JsonNode& line)
 {

@@ -21,7 +21,7 @@ const ActionRow& row_of(const Action& action);
 
 /// Returns the action as a line of JSON, from which `read_action` makes the same action again.
 std::string line_of(const Action& action);
-/// Adds the key "time" with the time of day (engine/annotation/script/log_time.h), which `read_action` ignores.
+/// Adds the time of day as the key "time" (engine/annotation/script/log_time.h), which `read_action` ignores.
 std::string with_present_time(const std::string& line);
 /// Fails for unknown ids, keys and values; the message names the expected ones.
 Action read_action(const JsonNode& line);
@@ -34,7 +34,7 @@ Action action_of_text(const std::string& text);
 /// Returns why the action would do nothing or be refused: "nothing is open", "no node is selected"; empty if it is
 /// available. An available action may still fail for reasons that only the device or a file reveals.
 std::string why_not(const Model& model, const Action& action);
-/// Returns whether the action is unavailable only because strokes that have ended are not fully painted yet.
+/// Returns whether the action is unavailable only because strokes that the user has ended are not fully painted yet.
 bool waits_for_strokes(const Model& model, const Action& action);
 
 }  // namespace shvr::ui

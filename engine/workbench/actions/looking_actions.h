@@ -15,7 +15,7 @@ struct Roll {
     double degrees = 0.0;
 };
 
-/// Moves the camera along its right, up and forward axes; distance 1 is the height of the view at the target's depth.
+/// Moves the camera along its right, up and forward axes. Unit of length: the height of the view at the target's depth.
 struct Move {
     glm::dvec3 heights{0.0};
 };
@@ -36,7 +36,7 @@ struct LookFrom {
     std::string camera;  ///< name of one of the session's cameras, or of a side of the volume
 };
 
-/// Stores the current view as a camera of the session, replacing a camera of that name. No name: chooses an unused one.
+/// Stores the current view as a camera of the session, replacing a camera of this name. Empty: chooses an unused name.
 struct KeepCamera {
     std::string name;
 };
@@ -91,7 +91,7 @@ struct ResetView {};
 /// Points the camera at the selected part of the trace, from the current distance.
 struct LookAtSelection {};
 
-struct UpdateOcclusion {};  ///< computes ambient occlusion again, in case automatic updates are switched off
+struct UpdateOcclusion {};  ///< computes ambient occlusion now, for use while automatic updates are off
 
 inline constexpr const char* LOOKING_GROUP = "Looking";
 

@@ -13,7 +13,7 @@ inline constexpr double MIN_RADIUS_VOXELS = 0.5, MAX_RADIUS_VOXELS = 60.0;
 struct ProbeTo {  ///< moves the probe to the mouse, within the plane through the probe that is parallel to the screen
     size_t pane = 0;
     glm::dvec2 pixel{0.0};
-    bool jumps = false;  ///< true: an open stroke does not paint between the old and the new position
+    bool jumps = false;  ///< true: a stroke in progress does not paint between the old and the new position
 };
 
 /// Moves the probe onto the visible structure: to the steepest rise of opacity along the ray (Renderer::pick).

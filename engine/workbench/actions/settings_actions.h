@@ -19,7 +19,7 @@ struct NewGroup {};
 /// Records all changes of settings since the last step as one history step, as the end of a drag does.
 struct EndStep {};
 
-/// Sets the black and white levels of slices so that almost all voxel values lie between the levels.
+/// Sets the black and white levels of slices so that almost all voxel values lie between them.
 struct AutoContrast {};
 
 struct KeepPreset {

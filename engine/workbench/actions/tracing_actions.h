@@ -8,7 +8,7 @@ namespace shvr::ui {
 
 class Tracer;
 
-/// A node counts as near the probe up to this distance, in radii of the probe.
+/// Maximum distance from the probe, in radii of the probe, at which a node counts as near the probe.
 inline constexpr double NEARBY_RADII = 4.0;
 
 struct DragNode {  ///< moves the selection with the probe, until released; the whole drag becomes one history step
@@ -29,7 +29,7 @@ struct SelectAt {
     bool whole_segment = false;
 };
 
-/// Selects the next node, by number, among those that clicks and keys can select, and points the camera at it.
+/// Selects the next node, by number, among nodes that clicks and keys can select, and points the camera at the node.
 struct StepNode {
     bool back = false;
 };

@@ -85,7 +85,7 @@ struct ShowFullScreen {
 };
 
 struct Quit {
-    bool saves = true;  ///< false: reverts the work to the last save, as one step that undo can take back
+    bool saves = true;  ///< false: reverts the work to the last save, as one step, which can be undone
 };
 
 inline constexpr const char* WINDOW_GROUP = "Window";

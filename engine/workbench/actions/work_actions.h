@@ -41,7 +41,7 @@ struct Screenshot {
 struct Open {
     std::filesystem::path path;
     std::string settings{};      ///< settings for this opening, one per line, as after --set: "volume.channel=red"
-    bool saves_outside = false;  ///< whether the user agreed that the session may write files outside its folder
+    bool saves_outside = false;  ///< whether the user has agreed that the session may write files outside its folder
 };
 
 /// Inspects a file for the open dialog, without reading voxels. The result appears in Model::candidate.
@@ -50,7 +50,7 @@ struct LookAtFile {
     std::string settings{};      ///< as in Open
 };
 
-/// How a file is to be used: as its contents suggest, or as the user states.
+/// How to use a file: as its contents suggest, or as the user states.
 enum class FileUse { by_contents, scan, mask, offsets, trace, look };
 inline constexpr Spelling<FileUse> FILE_USES[] = {
     {FileUse::by_contents, "by_contents"}, {FileUse::scan, "scan"},   {FileUse::mask, "mask"},
@@ -100,7 +100,7 @@ struct ForgetRecent {
     std::filesystem::path path;
 };
 
-/// Chooses between the journal's annotation and files that another program changed. Using the files can be undone.
+/// Chooses between the annotation in the journal and files that another program changed. Using the files can be undone.
 struct ChooseBelief {
     bool takes_files = false;
 };
@@ -144,7 +144,7 @@ inline constexpr auto WORK_ACTIONS = std::tuple{
     row<ExportTask, TaskRunner>(
         {"export", "Export", WORK_GROUP, "writes annotation in formats of other programs, and measurements"},
         TASK_FIELDS,
-        // The export dialog checks this condition in each frame, so no disk is accessed here; the task checks the disk.
+        // The condition asks no disk, since the export dialog checks it in each frame; the task checks the disk.
         [](const auto& model, const ExportTask& task) -> std::string {
             if ((!task.trace.empty() || !task.mesh.empty()) && model.trace.nodes().empty())
                 return "nothing is traced yet, so there is neither a trace nor a mesh to write";

@@ -18,7 +18,7 @@ public:
     /// Adds UTF-8 text, skipping invalid bytes. Returns whether the text has a character that was not added before.
     bool add(std::string_view text);
     bool add(uint32_t character);
-    /// Returns whether any added character is missing from some fonts.
+    /// Returns whether any added character is rare, that is, missing from some fonts.
     bool has_rare() const { return has_rare_; }
     /// Returns the first and last character of each contiguous range, ascending.
     std::vector<std::pair<uint16_t, uint16_t>> ranges() const;

@@ -25,7 +25,7 @@ constexpr std::span<const Spelling<PanelPlace>> spellings_of(PanelPlace)
 
 struct PanelRow {
     const char* id = "";     ///< never changes: preferences refer to it
-    const char* title = "";  ///< title, used alike in menus, headings and help
+    const char* title = "";  ///< title in menus, headings and help
     const char* hint = "";   ///< purpose of the panel
     PanelPlace place = PanelPlace::side;
     bool is_folded = false;

@@ -36,7 +36,7 @@ public:
     explicit Keymap(KeySet set = KeySet::modern, const Changes& changes = {});
 
     /// Returns the shortcuts bound to this chord: usually one, more if the user bound a chord twice. A shortcut that
-    /// Shift slows down is found with and without Shift.
+    /// Shift slows down is found for its chord with and without Shift.
     std::vector<const Shortcut*> shortcuts_for(const Chord& chord) const;
     /// Returns the chords of a shortcut.
     const std::vector<Chord>& chords_of(const Shortcut& shortcut) const;

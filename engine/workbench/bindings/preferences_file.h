@@ -14,8 +14,8 @@ namespace shvr::ui {
 /// Returns the path of the file in the folder of settings; empty if there is no such folder.
 std::filesystem::path preferences_file(const std::filesystem::path& settings);
 /// Returns defaults if the file does not exist. Fails at unknown keys and values, naming file, key, value and the
-/// expected value. An unknown shortcut or chord is not an error: its key change goes to `unusable_keys`, and a sentence
-/// that describes it to `complaints`.
+/// expected value. An unknown shortcut or chord is not an error: that change of keys goes to `unusable_keys`, and a
+/// sentence that describes it to `complaints`.
 Preferences load_preferences(const std::filesystem::path& file, std::vector<std::string>* complaints = nullptr);
 /// Applies a merge patch, as in {"theme": "light"}; null restores a default. Fails like load_preferences.
 Preferences patched(const Preferences& preferences, std::string_view patch);

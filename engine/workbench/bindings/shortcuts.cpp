@@ -25,7 +25,7 @@ constexpr double BLEND_STEP = 0.05;
 constexpr double STRENGTH_STEP = 0.05;
 constexpr double MAX_BLEND = 20.0;
 
-// ---- Functions that make actions. Templates with parameters appear several times in the table.
+// ---- Functions that make actions. Templates with parameters serve several rows of the table.
 
 template <class Kind>
 Action plain(const Model&, double)

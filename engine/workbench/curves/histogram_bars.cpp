@@ -11,13 +11,13 @@ namespace {
 
 constexpr int64_t MAX_VALUES = 65536;  ///< number of values of a 16-bit integer
 
-/// Returns the bin into which VolumeSource::measure sorts a value; values are relative to the volume's minimum.
+/// Returns the bin to which VolumeSource::measure assigns a value; values are relative to the volume's minimum.
 size_t bin_of(double value, int64_t span, size_t bins)
 {
     return std::min(bins - 1, size_t(value / double(span) * double(bins)));
 }
 
-/// Assumed voxel values: from 0 to `span` in `intervals` equal steps, where each value may be rounded down or up.
+/// Assumed set of possible voxel values: from 0 to `span` in `intervals` equal steps, each value rounded down or up.
 struct Lattice {
     int64_t span = 1, intervals = 1;
     double step() const { return double(span) / double(intervals); }
@@ -38,7 +38,7 @@ std::vector<int64_t> values_in_bins(const Lattice& lattice, size_t bins)
     return values;
 }
 
-/// Returns whether voxels lie in a bin that contains none of the assumed values, which disproves the assumption.
+/// Returns whether voxels lie in a bin that contains none of the assumed values, which proves the assumption wrong.
 bool is_refuted(const std::vector<int64_t>& values, const std::vector<int64_t>& counts)
 {
     for (size_t bin = 0; bin < counts.size(); ++bin)
@@ -96,7 +96,7 @@ void add_values(const Lattice& lattice, double lowest, const std::vector<int64_t
     }
 }
 
-/// Closes small gaps, which arise when a scan is brightened, or otherwise mapped by a curve that skips some values.
+/// Closes small gaps, which arise if a scan was brightened, or otherwise mapped by a curve that skips some values.
 /// Extends each bar that has voxels halfway to the next bar that has voxels.
 void join_small_gaps(std::vector<HistogramBar>& bars)
 {

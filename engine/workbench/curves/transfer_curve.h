@@ -39,7 +39,7 @@ public:
         size_t point = 0;
         bool operator==(const Found&) const = default;
     };
-    /// The threshold lines, and the horizontal extent of their labels. The paint threshold's label is in the first row.
+    /// The threshold lines, and the horizontal extent of their labels. The paint threshold's label is in the upper row.
     struct Lines {
         double paint_threshold = 0.0, haptic_threshold = 0.0;
         glm::vec2 paint_word{0.0f}, haptic_word{0.0f};

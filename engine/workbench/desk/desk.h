@@ -64,7 +64,7 @@ struct Desk {
     /// paint and the bricks of that moment, so a replayable log states the point's position instead of the pixel.
     void log_instead(const Actions& actions);
     DocumentModel document_model() const;
-    /// Empty objects, to which the references in a model are bound while no document is open.
+    /// Empty objects, to which the references in a model refer while no document is open.
     struct Nothing {
         Session session;
         VolumeInfo volume;

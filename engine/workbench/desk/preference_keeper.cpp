@@ -27,7 +27,7 @@ void PreferenceKeeper::act(const BindKeys& action)
     keys_of_it.clear();
     preferences.unusable_keys.erase(action.shortcut);
     for (const std::string_view chord : words_of(action.keys)) keys_of_it.emplace_back(chord);
-    // Stores no binding that equals the default, so that the binding changes if the user chooses the other set of keys.
+    // A binding that equals the default is not stored, so that it changes if the user chooses the other set of keys.
     if (Keymap(preferences.key_set, preferences.keys).chords_of(*shortcut) ==
         Keymap(preferences.key_set).chords_of(*shortcut))
         preferences.keys.erase(action.shortcut);

@@ -98,7 +98,7 @@ Document::Document(Renderer& renderer, Read read, const View::Options& view_opti
     take_kept_settings();
     choose_for_volume(session);
     begin_with_turning();
-    if (!is_script_) annotator.work().select_trace({});  // otherwise, the next node would be linked with an old one
+    if (!is_script_) annotator.work().select_trace({});  // the next node is not linked with a node of earlier work
     renderer.scene().show(annotator.document());
     renderer.scene().show_surfaces(surfaces, annotator.document().trace, session.groups);
     note_saved();
@@ -131,7 +131,7 @@ void Document::take_kept_settings()
     if (probe.voxel) touch.place(*probe.voxel * volume().spacing);
 }
 
-/// Chooses settings that neither the session file nor the journal states. Call it once both are read; writes neither.
+/// Chooses settings that neither the session file nor the journal states. Call it once both are read; changes neither.
 void Document::choose_for_volume(Session& of) const
 {
     if (!of.probe.node_radius_voxels) of.probe.node_radius_voxels = automatic_node_radius(volume());
@@ -323,7 +323,7 @@ std::optional<LocalBall> Document::ball_at(const glm::dvec3& voxel, const std::o
     const double finest = std::min({info.spacing.x, info.spacing.y, info.spacing.z});
     const glm::dvec3 size(info.size), ahead = way ? glm::normalize(*way) : glm::dvec3(0.0);
     if (glm::any(glm::lessThan(voxel, glm::dvec3(0.0))) || glm::any(glm::greaterThan(voxel, size))) return {};
-    // Tries small sizes first, since most structures are thin, and a small size needs few voxels to be read.
+    // Tries small sizes first, since most structures are thin, and small sizes read few voxels.
     for (const double most_voxels : {6.0, 12.0, 24.0}) {  // along the finest axis
         const double most = most_voxels * finest;
         // The centre is within `most` of the voxel, or of a point up to `most` behind it. The radius is at most `most`.

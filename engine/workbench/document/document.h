@@ -151,12 +151,12 @@ struct Document {
     enum class Parts { all, session, work };
     /// Begins a save without writing anything. Fails if nothing can be saved. Always call `end_save` after the save.
     std::shared_ptr<Saving> begin_save(Parts parts = Parts::all);
-    /// Ends a save. Returns the parts that were written. After a save under another name, the document has that name.
+    /// Ends a save. Returns the parts that were written. A save under another name also renames the document.
     Work::Saved end_save(Saving& saving);
     /// Returns whether only the view or the probe changed and the session has a file. Such a change is saved silently;
     /// without a session file it is not saved, so that merely looking at a volume creates none.
     bool has_view_to_keep() const;
-    /// Returns whether settings need saving. Overridden settings apply to this run only, so they prevent saving.
+    /// Returns whether settings need saving. Returns false if some are overridden, since these apply to this run only.
     bool has_settings_to_save() const { return !edits_are_saved() && overridden_.empty(); }
     /// Begins a save under another name. Work continues under that name, with its whole history; existing files stay.
     /// Commands are refused until the save has ended. `path`: the new session's. Fails if such a file exists.

@@ -221,7 +221,7 @@ void Touch::ask()
         relevance_.ask(wanted->place.box, wanted->threshold, now_ns());
     } catch (const DeviceLost&) {
         throw;
-    } catch (const Error&) {  // the device has no memory for this cube of voxels
+    } catch (const Error&) {  // the device lacks memory for this cube of voxels
         mirror_->decline(*wanted);
     }
 }

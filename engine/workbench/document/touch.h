@@ -58,7 +58,7 @@ public:
     Trace end_recording();
 
     glm::dvec3 probe() const { return probe_; }
-    /// Returns null while no servo moves the probe.
+    /// Returns null while no servo is running that moves the probe.
     const ServoState* servo() const { return servo_ ? &state_ : nullptr; }
     /// Returns the state of the device that moves the view; null if no device does.
     const ServoState* puck() const { return puck_ ? &puck_state_ : nullptr; }

@@ -12,7 +12,7 @@ Actions moves_of_puck(const DeviceState& state, double seconds)
 {
     Actions actions;
     const glm::dvec3 along = HEIGHTS_PER_S * seconds * state.rate, about = DEGREES_PER_S * seconds * state.turn_rate;
-    // The picture follows the puck, so the camera moves the other way: forwards if the puck moves towards the viewer.
+    // The picture follows the puck, so the camera moves in the opposite direction: forwards if the puck comes nearer.
     if (along != glm::dvec3(0.0)) actions.push_back(Move{{-along.x, -along.y, along.z}});
     if (about.x != 0.0 || about.y != 0.0) actions.push_back(Orbit{-about.y, about.x});
     if (about.z != 0.0) actions.push_back(Roll{-about.z});

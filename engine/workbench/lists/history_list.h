@@ -13,7 +13,7 @@ namespace shvr::ui {
 struct HistoryList {
     const History* history = nullptr;
     size_t done = 0;        ///< number of steps done, without changed settings that are not a step yet
-    bool is_ahead = false;  ///< true: changed settings are not a step yet; one more row, the last, shows them
+    bool is_ahead = false;  ///< true: changed settings are not a step yet; the last row, an additional one, shows them
 
     size_t rows() const;
     size_t present() const { return done + is_ahead; }

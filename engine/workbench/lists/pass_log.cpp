@@ -88,7 +88,7 @@ void PassLog::note(double now_s, const std::vector<View::PassTime>& passes)
     Frame frame{.at_s = now_s, .added_ms = {}};
     for (const View::PassTime& pass : passes) {
         const auto was = std::ranges::find(passes_, pass.name, &View::PassTime::name);
-        // If a pass ran fewer times than before, its counters were reset, since another picture has begun.
+        // If a pass has run fewer times than before, its counters were reset because another picture has begun.
         const bool goes_on = was != passes_.end() && was->runs <= pass.runs && was->total_ms <= pass.total_ms;
         frame.added_ms[pass.name] = pass.total_ms - (goes_on ? was->total_ms : 0.0);
     }

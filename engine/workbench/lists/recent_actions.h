@@ -17,7 +17,7 @@ public:
     static constexpr size_t MAX_ENTRIES = 50;
 
     void begin(const Action& action);
-    /// Notes that the newest action was carried out; otherwise, the report says that it was refused.
+    /// Notes that the newest action was carried out. Without this call, the report says that the action was refused.
     void note_done() { entries_.back().is_done = true; }
     /// Returns lines that replay the actions, oldest first (action_rows.h). After " # ", a comment states that an
     /// action was refused, or how many actions an entry stands for.

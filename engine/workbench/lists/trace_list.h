@@ -30,7 +30,7 @@ enum class TraceOrder { number, group, nodes, length };
 
 class TraceList {
 public:
-    /// Rebuilds the rows if the trace or the order changed since the last call. Returns whether it did.
+    /// Rebuilds the rows if the trace or the order has changed since the last call. Returns whether it rebuilt them.
     bool update(const TraceGraph& trace, TraceOrder order, bool is_descending);
     const std::vector<SegmentRow>& segments() const { return segments_; }
     /// Nodes in the order of their numbers; `order` applies to segments only.

@@ -11,7 +11,7 @@
 
 namespace shvr::ui {
 
-/// Returns the message of an exception in the form that is shown to the user.
+/// Returns an exception's message in the form in which users see it.
 inline std::string told_of(const std::exception& error)
 {
     return dynamic_cast<const std::bad_alloc*>(&error) ? "host memory is exhausted" : error.what();

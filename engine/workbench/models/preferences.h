@@ -50,7 +50,7 @@ struct Preferences {
     Theme theme = Theme::dark;
     double font_pixels = 14.0;    ///< at a scale of 1
     std::optional<double> scale;  ///< scale of the whole interface; none: the scale of the screen
-    /// Limits of device and host memory, which apply from the next start; none: uses what is available.
+    /// Limits of device and host memory, in effect from the next start on; none: uses as much as is available.
     std::optional<double> budget_device_mib, budget_host_mib;
     WindowLayout layout;
     ChosenDevice device;

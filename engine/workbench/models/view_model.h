@@ -19,7 +19,7 @@ struct ViewModel {
     const std::vector<Screen::Part>& panes;
     const Screen* screen = nullptr;            ///< null where nothing is open
     std::optional<Pointer> pointer{};          ///< position of the mouse while it is over the picture; otherwise null
-    std::optional<glm::dvec3> picked_pivot{};  ///< pivot picked by the user, in volume space; used if settings say so
+    std::optional<glm::dvec3> picked_pivot{};  ///< pivot picked by the user, in volume space; settings select its use
     bool view_is_complete = true;
     bool view_is_limited = false;  ///< drawn coarser than the screen: visible bricks exceed the memory budget
 };

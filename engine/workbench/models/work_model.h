@@ -29,7 +29,7 @@ struct TraceModel {
 /// Made by the settings' editor.
 struct HistoryModel {
     const History* history = nullptr;   ///< null where nothing is open
-    size_t undoable = 0, redoable = 0;  ///< a changed setting that is not yet a step of the history counts as undoable
+    size_t undoable = 0, redoable = 0;  ///< includes changed settings that are not a step of the history yet
 };
 
 /// Made by the saver.

@@ -37,8 +37,8 @@ bool is_opened(FileContent content)
            content == FileContent::picture;
 }
 
-/// Returns whether the points of a transfer function are relative to a volume's tissue, as in preset files, instead of
-/// being intensities.
+/// Returns whether the points of a transfer function are relative to a volume's tissue, as in files of presets, and not
+/// intensities.
 bool is_preset(const std::string& text, const std::filesystem::path& path)
 {
     const JsonDocument json(text, path.string());

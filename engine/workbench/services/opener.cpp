@@ -22,7 +22,7 @@ bool is_one_journal(const std::filesystem::path& a, const std::filesystem::path&
 }
 
 /// Returns the path to open for a picture: its project or its bare volume. Empty if the file is no picture, or if the
-/// picture shows raw voxels without a project, whose layout only the picture's session states.
+/// picture shows a raw file without a project, whose layout is stated only in the picture's session.
 std::filesystem::path opened_for_picture(const std::filesystem::path& path, const OpenedSession& opened)
 {
     std::error_code ignored;
@@ -175,7 +175,7 @@ void Opener::advance()
         }
         if (opening_->scene && opening_->scene->load_on(SLICE_S)) finish();
     } catch (const DeviceLost&) {
-        throw;  // keeps the opening, which continues once a device is available
+        throw;  // keeps the opening: it continues once a device is available
     } catch (...) {
         end(std::current_exception());
     }

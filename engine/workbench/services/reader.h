@@ -23,7 +23,7 @@ public:
     void advance() override;
     /// Discards the value that was read last, since it belongs to the previous document.
     void begin_document() { read_voxel_.reset(); }
-    /// Returns the text to copy to the clipboard, and clears it; empty: no text was set since the last call.
+    /// Returns the text to copy to the clipboard, and clears it; empty: there has been no text since the last call.
     std::string take_clipboard() { return std::exchange(clipboard_, {}); }
     ReadingModel model() const;
 

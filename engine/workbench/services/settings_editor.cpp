@@ -165,7 +165,7 @@ void SettingsEditor::note_edit()
     settings_to_record_ = was_set_in_this_turn_ = true;
 }
 
-/// Makes changed settings a history step, but not while the user holds a control, so that a drag becomes one step.
+/// Makes changed settings a history step, unless the user is holding a control: a whole drag thus becomes one step.
 void SettingsEditor::follow_settings()
 {
     const bool is_being_set = std::exchange(was_set_in_this_turn_, false) || is_hand_down_;

@@ -67,9 +67,9 @@ private:
     std::optional<double> to_keep_since_s_;       ///< time of the oldest view change not in the journal; null: none
     double last_change_s_ = 0.0;                  ///< time of the last change to be written to the journal
     std::optional<Session> session_before_hand_;  ///< the session before the user began to drag a control
-    /// Number of undoable steps after the work was discarded. While the number is the same, nothing is saved.
+    /// Number of undoable steps just after the work was discarded. While this number is unchanged, nothing is saved.
     std::optional<size_t> discarded_steps_;
-    /// Number of undoable steps after a stroke that changed nothing; while it stays the same, undo reverts no step.
+    /// Number of undoable steps after a stroke that changed nothing; while it is unchanged, undo reverts no step.
     std::optional<size_t> steps_at_empty_stroke_;
     Attempt recording_, keeping_;
 };

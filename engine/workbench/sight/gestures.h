@@ -14,9 +14,9 @@ inline constexpr double CLICK_PIXELS = 4.0;
 /// that touches down elsewhere, a remote pointer, or a pointer that was over a panel.
 bool is_jump(const glm::dvec2& way_pixels, const glm::uvec2& pane_pixels);
 
-/// Returns black and white levels of slices after a drag by `heights`, in pane heights. A drag sideways scales the
-/// distance between the levels, by a factor of 4 per half height; a drag down shifts both up, by their distance per
-/// height. `range`: the volume's; the distance is at least a thousandth of the range.
+/// Returns black and white levels of slices after a drag by `heights`, in pane heights. A sideways drag scales the
+/// distance between the levels, by a factor of 4 per half height; a drag down raises both, by their distance per
+/// height. `range`: range of the volume's values; the distance is at least a thousandth of it.
 ValueRange dragged_contrast(const ValueRange& contrast, const ValueRange& range, const glm::dvec2& heights);
 
 /// Returns the paint threshold for a picked value: the mean of the value and the lowest visible value, since the

@@ -175,7 +175,7 @@ private:
         ring(*at, 5.0 * units_, LINK, 2.0);
     }
 
-    /// Draws the link that a node would get if it were added now, labelled with its length.
+    /// Draws the link that a new node would get if it were added now, labelled with the link's length.
     void link()
     {
         const std::optional<uint32_t> selected = model_.trace.selection().node();
@@ -314,7 +314,7 @@ private:
             text = std::to_string(std::lround(100.0 * *model_.reading.relevant_share)) + " % full, " + text;
             meter(at->pixel, reach + 4.0 * units_, *model_.reading.relevant_share);
         }
-        // Puts the text to the left if the right side lacks room. CHARACTER is an upper bound of a character's width.
+        // Puts the text to the left if the right side lacks room. CHARACTER: upper bound of a character's width.
         constexpr double CHARACTER = 8.0;
         const double beside = 0.75 * reach + 6.0 * units_;
         const bool has_room =

@@ -51,7 +51,7 @@ void TapLink::note_read(ReadResult result, const DeviceState& state) noexcept
     now_.tick.read = !was_written_ && result != ReadResult::fresh ? ReadResult::lost : result;
     now_.tick.state = state;
     if (const Latest<RelevancePatch>* const relevance = relevance_.load(std::memory_order_acquire)) {
-        now_.relevance = relevance->value().sequence;  // this is the relevance that the servo used in this tick
+        now_.relevance = relevance->value().sequence;  // this is the relevance that the servo has used in this tick
         now_.tick.relevance_time_ns = now_.relevance > 0 ? relevance->value().time_ns : 0;
     }
     if (result != ReadResult::fresh) return;

@@ -35,7 +35,7 @@ struct TapOrder {
     bool operator==(const TapOrder&) const = default;
 };
 
-/// Forces of the last seconds, and values that the servo's own state does not have.
+/// Forces of the last seconds, and values that ServoState does not contain.
 struct TapState {
     static constexpr size_t BARS = 250;
     static constexpr uint32_t TICKS_A_BAR = 20;

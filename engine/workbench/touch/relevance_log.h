@@ -13,7 +13,7 @@ namespace shvr::ui {
 
 class RelevanceLog {
 public:
-    /// Maximum number of waiting entries; further ones are dropped. It is reached after eight seconds at the earliest.
+    /// Maximum number of waiting entries; further ones are dropped. Without take(), this takes eight seconds or more.
     static constexpr size_t MAX_ENTRIES = 1024;
 
     /// Main thread, before and after a recording

@@ -49,7 +49,7 @@ PlaneHold plane_of(TouchPlane plane, const glm::dvec3& point, const Workspace& w
     if (!hold.is_on) return hold;
     glm::dvec3 across(0.0);
     across[axis_of(plane)] = 1.0;
-    // The matrix to_volume is a rotation times a scale, so its transpose maps normals to the device's frame.
+    // to_volume is a rotation times a scale, so its transpose maps normals to the device's frame (then normalized).
     hold.normal = glm::normalize(glm::transpose(workspace.to_volume) * across);
     hold.point_m = glm::inverse(workspace.to_volume) * (point - workspace.origin);
     return hold;
