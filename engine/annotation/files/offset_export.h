@@ -17,8 +17,8 @@ namespace shvr {
 
 bool is_offset_export(const std::filesystem::path& path);
 
-/// Replaces an old file atomically. `volume`, which has the field's size, gives the
-/// voxels' positions. `foreign` and the result have the same meaning as for
+/// Exports the offsets, and atomically replaces an existing file. `volume`, which has the field's size,
+/// gives the voxels' positions. `foreign` and the returned message have the same meaning as for
 /// `export_mask`.
 std::string export_offsets(const std::filesystem::path& path, const DensityField& field, const VolumeInfo& volume,
                            const Progress& progress = {}, Foreign foreign = Foreign::refused);

@@ -232,7 +232,7 @@ private:
         }
     }
 
-    /// Reads row `y` of a slice. Makes a set for each run of voxels, and for each gap between two runs.
+    /// Reads row `y` of a slice. Makes a union-find set for each run of voxels, and for each gap between two runs.
     void read(BrickRow& bricks, int64_t y, int64_t slice)
     {
         Runs& runs = bricks.rows[size_t(y)].painted;

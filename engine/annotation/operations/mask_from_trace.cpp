@@ -62,7 +62,7 @@ std::vector<uint32_t> TracePainter::reaching(const VoxelBox& voxels, std::span<c
     return found;
 }
 
-/// `bricks`: a box of bricks; `done`, `share`: start and size of its part of the progress.
+/// `bricks`: a box of bricks; `done`, `share`: start and size of this call's part of the progress.
 void TracePainter::paint(const VoxelBox& bricks, std::span<const uint32_t> shapes, double done, double share)
 {
     const VoxelBox voxels{bricks.lower * BRICK_SIDE, glm::min(bricks.upper * BRICK_SIDE, edit_.mask().size())};

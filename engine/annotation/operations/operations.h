@@ -150,7 +150,7 @@ struct MaskFromTraceOp {
 /// Adds the centre lines of a group to the trace; radii are distances to the group's surface. Changes no voxel.
 struct TraceFromMaskOp {
     int64_t group = 1;
-    /// Removes a line with a loose end if its length plus the radius there is at most this many radii of its branch.
+    /// Removes a line with a loose end if its length plus the radius of this end is at most `spur` radii of its branch.
     double spur = 1.5;
     std::optional<double> tolerance{};  ///< largest error of positions and radii; null: longest side of a voxel
     static constexpr bool ADDS_TRACE = true;

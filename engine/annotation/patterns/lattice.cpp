@@ -124,7 +124,7 @@ std::vector<Estimate> estimates_of(const std::vector<FloretPair>& pairs)
     return estimates;
 }
 
-/// Sets each pair's most likely step, whether the pair is in line, and the probability that it is by chance.
+/// Sets each pair's most likely step, whether the pair is in line, and the probability that it is in line by chance.
 void assign_steps(const Estimate& estimate, std::vector<FloretPair>& pairs)
 {
     const double part = TURN / estimate.jugacy;

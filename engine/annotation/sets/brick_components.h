@@ -30,7 +30,7 @@ public:
     std::span<const Run> runs(int64_t brick, size_t row) const;
     /// The representative of all labels that are joined with this label.
     uint32_t root_of(uint32_t label) { return forest_.root_of(label); }
-    /// Let callers join labels for reasons of their own; `add_label` returns a new label that has no voxels.
+    /// For callers that join labels for other reasons; `add_label` returns a new label that has no voxels.
     uint32_t add_label() { return forest_.add(); }
     void join(uint32_t a, uint32_t b) { forest_.join(a, b); }
     /// Joins a label with the runs on one face of an added brick, whose coordinate along `axis` (0 ... 2) is `at`.

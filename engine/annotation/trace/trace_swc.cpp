@@ -127,7 +127,7 @@ void read_trace_swc(TraceReader& reader, std::string_view text)
                 reader.add_internode(where, {parent->second, sample.node, reader.trace.node(sample.node).group});
             });
     }
-    // Every sample has at most one parent, so a loop always means that a sample is its own ancestor.
+    // Refuses loops: as every sample has at most one parent, a sample in a loop is its own ancestor.
     std::vector<std::string> notes;
     try {
         trees_of(reader.trace, Loops::refuse, "SWC", notes);

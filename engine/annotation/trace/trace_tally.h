@@ -1,8 +1,8 @@
 #pragma once
-// Running totals of a trace, updated with each change: lengths by
-// group, and the number of segments. A change costs as much as
-// visiting the internodes of its nodes; a change that splits or joins
-// segments, about as much as visiting the shorter of the two
+// Running totals of a trace, updated with each change: lengths by group, and the number
+// of segments. So totals are known at any time without a visit to the whole trace. A
+// change costs as much as visiting the internodes of the changed nodes; a change that
+// splits or joins segments costs about as much as visiting the shorter of the two
 // segments.
 
 #include <cstddef>

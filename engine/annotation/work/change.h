@@ -1,9 +1,9 @@
 #pragma once
-// The annotated document, and the records through which it changes.
-// Records hold exact states before and after, so undo applies the same
-// record backwards. A new kind of annotation adds an alternative to
-// `Change`; the compiler then reports all code that does not handle it
-// yet.
+// The annotated document, and the records through which it changes. A
+// record holds the exact states before and after a change, so undo applies
+// the same record backwards. To add a kind of annotation, add an
+// alternative to `Change`; the compiler then reports all code that does not
+// handle it yet.
 
 #include <cstdint>
 #include <iterator>

@@ -31,7 +31,7 @@ public:
     const Command* undo(Document& document);
     const Command* redo(Document& document);
 
-    /// Replay perform(), extend(), undo() and redo() without applying changes: the document has its final state now.
+    /// Replay perform(), extend(), undo(), redo() without applying changes: the document already has its final state.
     void note(std::string label, RecordNumber record);
     void note_extension(RecordNumber record);
     void note_undo();
