@@ -63,7 +63,7 @@ std::string head_of(const fs::path& path, bool& is_compressed)
     return is_compressed ? inflated_head(path, NiftiHeader::BYTES_OF_2) : head;
 }
 
-/// Replaces an ending: scan.hdr.gz, ".hdr", ".img" -> scan.img.gz. Empty unless the name ends in `from` or `from`.gz.
+/// Replaces an ending: from ".hdr" to ".img", scan.hdr.gz becomes scan.img.gz. Empty if the name has another ending.
 fs::path with_ending(const fs::path& path, std::string_view from, const std::string& to)
 {
     std::string name = path.filename().string();

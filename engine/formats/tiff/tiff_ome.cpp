@@ -147,7 +147,7 @@ private:
         result_.slices = side(pixels, "SizeZ");
         result_.frames = side(pixels, "SizeT");
         result_.channels = side(pixels, "SizeC");
-        // SizeC also counts the samples of a pixel, which share a page; `channels` counts only those with own pages.
+        // SizeC also counts the samples of a pixel, which share a page; `channels` counts only channels with own pages.
         if (result_.channels % samples_ != 0) {
             fail(subject_, ": SizeC is ", result_.channels, "; expected a multiple of the ", samples_,
                  " samples of a pixel");

@@ -103,7 +103,7 @@ void take_zip64_sizes(const std::string& path, std::string_view extra, ZipEntry&
         }
         return;
     }
-    // Without that extra field, a size of all ones is the actual size: 2^32 - 1.
+    // Without a zip64 extra field, a size of all ones is the actual size: 2^32 - 1.
 }
 
 std::vector<ZipEntry> entries_of(const std::string& path, const std::vector<char>& bytes, uint64_t count)
@@ -150,7 +150,7 @@ ZipDirectory read_zip_directory(const std::string& path, uint64_t file_bytes, co
     }
     ZipDirectory directory{.offset = end.offset, .bytes = read(read_at, end.offset, end.bytes)};
     std::vector<ZipEntry>& entries = directory.entries = entries_of(path, directory.bytes, end.entries);
-    // The last of equal names counts: zarr-python, for one, appends changed attributes and leaves the old entry.
+    // Of entries with equal names, the last counts: zarr-python, for one, appends changed attributes and keeps the old.
     std::ranges::reverse(entries);
     std::ranges::stable_sort(entries, {}, &ZipEntry::name);
     const auto repeated = std::ranges::unique(entries, {}, &ZipEntry::name);
