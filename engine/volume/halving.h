@@ -86,7 +86,7 @@ void halve_block(const HalvingRows<T>& rows, int64_t at, Length length, T* halve
         halved[length / 2] = mean_of<ROWS, T>(alone);
     }
     if constexpr (std::is_floating_point_v<T>) {
-        // A mean that is not finite includes a voxel that is not: computes the mean again from the finite voxels alone.
+        // A mean that is not finite includes a non-finite voxel: computes the mean again from the finite voxels alone.
         for (int64_t x = 0; x < length; x += 2) {
             if (std::isfinite(halved[x / 2])) continue;
             halved[x / 2] = mean_of_finite(rows, at + x, at + std::min<int64_t>(x + 2, length));

@@ -151,7 +151,7 @@ public:
     }
 
 private:
-    /// Excludes all from the outermost to the innermost with `is_last(index, voxels up to it)`; up to `limit` voxels.
+    /// Excludes all values from outermost to innermost with `is_last(index, voxels up to it)`, up to `limit` voxels.
     template <class IsLast>
     void exclude_beyond(int64_t limit, const IsLast& is_last)
     {

@@ -230,7 +230,7 @@ double voxels_of_level(const VolumeSource& source, int level)
     return double(size.x) * double(size.y) * double(size.z);
 }
 
-/// Returns the stored blocks of a level; null if they have over `most_voxels` voxels, or if all voxels are few enough.
+/// Returns a level's stored blocks; null if over `most_voxels` voxels, or if the level is small enough to read whole.
 std::optional<StoredBlocks> stored_in(const VolumeSource& source, int level, int64_t most_voxels)
 {
     if (voxels_of_level(source, level) <= double(MAX_VOXELS_MEASURED)) return std::nullopt;
