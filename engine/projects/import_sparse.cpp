@@ -73,7 +73,7 @@ public:
     }
 
 private:
-    /// Removes the first chunks with a common ancestor `levels` levels above from `rest`, and returns them.
+    /// Removes from `rest` its first chunks that have a common ancestor `levels` levels above, and returns them.
     static std::span<const Size3> take_below(std::span<const Size3>& rest, int levels)
     {
         const Size3 above = ancestor(rest.front(), levels);
