@@ -64,7 +64,7 @@ bool is_within(const fs::path& path, const fs::path& folder)
     return !relative.empty() && *relative.begin() != "..";
 }
 
-/// Returns the folder that belongs to a session: the project's folder, or else the session file's. Keeps links.
+/// Returns the folder of a session: the project's folder, or else the session file's. Does not resolve links.
 fs::path folder_of_session(const fs::path& session_file)
 {
     const fs::path folder = fs::absolute(session_file).lexically_normal().parent_path();

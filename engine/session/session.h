@@ -131,7 +131,7 @@ struct ProbeSettings {
 /// Maximum number of surfaces in one session file.
 inline constexpr size_t MAX_SESSION_SURFACES = 100'000;
 
-/// A distance that the user measured between two points, in voxels, so that it changes with the spacing.
+/// A distance that the user measured. Its two points are in voxels, so that it follows changes of the spacing.
 struct Measurement {
     glm::dvec3 from{0.0}, to{0.0};
     bool operator==(const Measurement&) const = default;
