@@ -14,8 +14,8 @@ struct PlannedSegment {
     std::vector<uint32_t> nodes;  ///< nodes of the true trace, in the order of work
     bool is_adaxial = false;
 };
-/// Begins at an end of an adaxial vein. Each further segment begins at a node that an earlier segment has reached: the
-/// nearest first, and adaxial veins before others, with some randomness.
+/// The plan begins at an end of an adaxial vein. Each further segment begins at a node that an earlier segment has
+/// reached: the nearest first, and adaxial veins before others, with some randomness.
 std::vector<PlannedSegment> plan_segments(const StudyScene& scene, StudyRandom& random);
 
 /// Returns positions along a polyline, about `spacing` apart and equally far from each other, both ends included.
