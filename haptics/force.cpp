@@ -178,7 +178,7 @@ glm::dvec3 click_of(const ForceSettings& settings, const DeviceCaps& caps, const
     const bool begins = pull.in_contact && click.off_ns >= CLICK_PAUSE_NS && speed >= CLICK_LEAST_SPEED;
     if (pull.in_contact)
         click.off_ns = 0;
-    else if (pull.is_usable)  // unusable relevance does not prove that there is no contact
+    else if (pull.is_usable)  // unusable relevance is no proof of a missing contact
         click.off_ns = std::min(click.off_ns + dt_ns, CLICK_PAUSE_NS);
     if (!settings.clicks || !caps.outputs_force) {
         click.left_ns = 0;

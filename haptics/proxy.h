@@ -67,7 +67,7 @@ std::vector<glm::dvec3> random_points(int count);
 /// Returns low-discrepancy points in the unit ball: an additive recurrence with the plastic number (Roberts 2018),
 /// mapped to equal volumes.
 std::vector<glm::dvec3> even_points(int count);
-/// Returns the proxy as the mean of those of the `points` that are relevant.
+/// Returns the proxy as the mean of those points in `points` that are relevant.
 Proxy find_sampled_proxy(const RelevancePatch& patch, const glm::dvec3& centre, double radius,
                          std::span<const glm::dvec3> points) noexcept;
 

@@ -98,7 +98,7 @@ struct RaycastParams {
     float slice_scale;    ///< 1 / (codes from black to white)
     float slice_paint;    ///< share of a painted voxel's colour that comes from its group
     vec3 shell_center;    ///< voxel space; centre of the iso-surface's region
-    vec3 shell_reach;     ///< half the size of the box, or radius of the ball along each axis; voxels
+    vec3 shell_reach;     ///< half the size of the box, or the ball's radius along each axis; in voxels
     float shell_code;     ///< threshold of the surface
     vec3 shell_color;     ///< linear light
     float shell_opacity;  ///< opacity of one crossing of the surface

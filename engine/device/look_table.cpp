@@ -76,7 +76,7 @@ bool has_smooth_lines(const TransferFunction& function)
     return true;
 }
 
-/// A number of entries that fits into fast memory and puts each control point at an entry; null if no number does.
+/// A number of entries that fits into fast memory and puts each control point at an entry; null if this is impossible.
 std::optional<uint32_t> entries_at_points(const TransferFunction& function, const IntensityWindow& window,
                                           const TableRange& range)
 {

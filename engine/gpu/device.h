@@ -101,8 +101,8 @@ public:
     const DeviceTraits& traits() const { return traits_; }
     bool looks_ahead() const { return looks_ahead_; }
     const VkPhysicalDeviceMemoryProperties& memory_properties() const { return memory_properties_; }
-    /// Free bytes of the heap counted in `device_bytes`: the bytes that the driver still grants this program, given the
-    /// usage of other programs. Null if the driver does not report this.
+    /// Free bytes of the heap whose size is `device_bytes`: the bytes that the driver still grants this program, given
+    /// the usage of other programs. Null if the driver does not report this.
     std::optional<uint64_t> heap_bytes_left() const;
 
     /// Names an object for validation messages, captures and traces.

@@ -272,7 +272,7 @@ std::optional<VoxelBox> Annotator::advance_stroke()
         if (frame.regions.empty())
             stroke.next = frame.end;
         else if (stroke.query.ask(stroke.brush, std::move(frame.regions), RegionQuery::Wait::no))
-            stroke.asked_to = frame.end;  // without a submission, bricks are still being loaded
+            stroke.asked_to = frame.end;  // else: nothing was submitted, since bricks are still being loaded
     } else if (stroke.has_ended) {
         last_stroke_ = stroke.result;
         ++strokes_done_;

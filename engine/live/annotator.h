@@ -86,7 +86,7 @@ public:
     bool stroke_is_running() const { return !strokes_.empty(); }
     /// Whether an interactive stroke has begun but not ended.
     bool stroke_is_open() const { return !strokes_.empty() && !strokes_.back().has_ended; }
-    /// Ends all strokes at once. Painted parts stay; unpainted parts are dropped.
+    /// Ends all strokes at once. Parts already painted stay; the other parts are dropped.
     void drop_strokes();
     /// Drops the queries in flight after a restart of the device; `advance` submits them again.
     void drop_queries();

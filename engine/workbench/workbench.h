@@ -91,7 +91,7 @@ public:
     bool has_work() const;
     /// Returns whether the journal on disk lacks changes of the view, the probe or similar settings.
     bool has_view_to_keep() const { return services_.settings.has_view_to_keep(); }
-    /// Returns whether there is a picture that does not show the last changes yet.
+    /// Returns whether a picture exists that does not show the last changes yet.
     bool is_stirring() const { return services_.viewer.is_stirring(); }
     /// Returns whether the open document may be closed; call this once a frame. Saves all work as Save does; if only
     /// the view changed, saves it without a message. Read-only work is not saved, as a message has told the user

@@ -68,7 +68,7 @@ vec2 cone_range(const Rod rod, float radius, const vec3 offset, const vec3 direc
                 max(first ? roots.x : NOTHING.y, second ? roots.y : NOTHING.y));
 }
 
-// Lengths along the line where it enters and leaves a surface. `from` is relative to the line's origin. The hull is
+// Lengths along the line where it enters and leaves a surface. `from` is relative to the line's origin. The rod is
 // convex, so all points where the line meets a ball or the cone lie between these two lengths.
 vec2 surface_range(const Surface surface, const vec3 from, const vec3 direction)
 {

@@ -213,7 +213,7 @@ void take_samples(const RaycastParams params, const Ray ray, const Lattice latti
         march.rises.trough = march.i > step_before ? 0.0 : march.rises.trough;
 #endif
         march.unseen = searches_on ? 0u : march.unseen;
-        // A step begins with the density at the end of the previous step, if that end is in a brick of the same level.
+        // If the end of a step is in a brick of the same level, the next step begins with the density at that end.
         const uint run = march.i;
         float front = PREINTEGRATED != 0u ? value_at_begin(params, ray, lattice, run) : 0.0;
         uint level = 0u;

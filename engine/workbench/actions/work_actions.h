@@ -144,7 +144,7 @@ inline constexpr auto WORK_ACTIONS = std::tuple{
     row<ExportTask, TaskRunner>(
         {"export", "Export", WORK_GROUP, "writes annotation in formats of other programs, and measurements"},
         TASK_FIELDS,
-        // The condition asks no disk, since the export dialog checks it in each frame; the task checks the disk.
+        // The export dialog checks this condition in each frame, so no disk is accessed here; the task checks the disk.
         [](const auto& model, const ExportTask& task) -> std::string {
             if ((!task.trace.empty() || !task.mesh.empty()) && model.trace.nodes().empty())
                 return "nothing is traced yet, so there is neither a trace nor a mesh to write";

@@ -11,7 +11,7 @@ public:
     explicit Places(const VolumeInfo& volume) : volume_(volume) {}
 
     void add(const TraceNode& node) { add(node.position / volume_.spacing, node.position / volume_.spacing); }
-    /// A run covers consecutive voxels of a brick, x fastest: its first and last voxel determine its bounding box.
+    /// A run covers consecutive voxels of a brick, x fastest, so its first and last voxel determine its bounding box.
     template <class Value>
     void add(const BrickChange<Value>& change)
     {

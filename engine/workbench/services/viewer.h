@@ -47,7 +47,7 @@ public:
     std::optional<glm::dvec3> seen_near(const Pane& pane, const glm::dvec2& pixel, double depth, double reach) const;
     /// Returns the size of the picture in pixels; 0, 0: no picture is drawn.
     const glm::uvec2& pixels() const { return pixels_; }
-    /// Returns whether there is a picture that does not show the last changes yet.
+    /// Returns whether a picture exists that does not show the last changes yet.
     bool is_stirring() const { return pixels_.x > 0 && pixels_.y > 0 && (look_is_stale_ || camera_moved_); }
     void set_pointer(const std::optional<Pointer>& pointer) { pointer_ = pointer; }
     const std::optional<Pointer>& pointer() const { return pointer_; }

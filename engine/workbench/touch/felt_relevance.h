@@ -7,7 +7,7 @@
 
 namespace shvr::ui {
 
-/// Writes everything in `patch` except its sequence number, time and settings.
+/// Fills in `patch`, except its sequence number, time and settings.
 void put_bits(const RelevancePlace& place, const RelevanceBits& bits, RelevancePatch& patch);
 void put_mirrored(const MirroredRelevance& mirrored, RelevancePatch& patch);
 

@@ -31,8 +31,8 @@ struct Profile {
     uint64_t device_budget = 0, host_budget = 0;  ///< bytes
     FrameGraph graph;                             ///< the last frame's
     bool complete = true;                         ///< the pictures lack nothing
-    int64_t voxels_not_read = 0;                  ///< unreadable voxels, which count as the lowest value of the
-                                                  ///< volume's type
+    int64_t voxels_not_read = 0;                  ///< number of unreadable voxels, for which the lowest value of the
+                                                  ///< volume's type is drawn
     std::vector<std::string> warnings;
 };
 
