@@ -7,7 +7,7 @@ namespace shvr {
 
 namespace {
 
-/// The groups that the voxels of `group`, and those of `with`, get.
+/// The new groups of the voxels of `group` and of the voxels of `with`.
 struct Replacement {
     uint8_t of_group, of_with;
 };

@@ -35,7 +35,7 @@ struct OperationResult {
     int64_t voxels = 0;  ///< that change their group
     /// Voxels by their groups before and after.
     std::map<std::pair<uint8_t, uint8_t>, int64_t> moved{};
-    StrokeResult::ByGroup kept_locked{};  ///< by group: voxels unchanged as it, their old or wanted group, is locked
+    StrokeResult::ByGroup kept_locked{};  ///< by locked group: voxels unchanged because it is their old or wanted group
     int64_t kept_by_limits = 0;           ///< voxels that stay because of OperationLimits
     std::string note{};                   ///< what the operation found, as in "3 holes"
     /// Cost: number of mask bricks read (each read counts), of bricks changed, and of intensity bricks read.

@@ -173,7 +173,7 @@ Winners median_winners(const Surroundings& around, std::span<const KernelRow> ba
     return winners;
 }
 
-/// Gaussian weights at 0, 1, ... voxels along an axis, up to 1024, so that the product of three sums fits into 64 bits.
+/// Gaussian weights at 0, 1, ... voxels along an axis; at most 1024 each, so the product of three sums fits 64 bits.
 std::vector<uint64_t> gaussian_along(double spacing, double distance, int64_t voxels)
 {
     std::vector<uint64_t> weights;

@@ -35,7 +35,7 @@ struct FoundHead {
 };
 FoundHead find_head(VeinGraph graph);
 
-/// Follows the chain of internodes that begins at a node with one internode, up to the next end or branch; returns it.
+/// Follows the chain of internodes from a node with one internode to the next end or branch, and returns that node.
 uint32_t other_end(const VeinGraph& graph, uint32_t end);
 
 /// Quantile of one or more values, interpolated linearly between sorted values (type 7 of Hyndman and Fan 1996).

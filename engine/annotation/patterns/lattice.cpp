@@ -53,7 +53,7 @@ std::vector<FloretPair> pairs_of(const std::vector<glm::dvec3>& places)
     return pairs;
 }
 
-/// Mean azimuth and order (difference of ranks) of pairs to one side; ignores orders far from the median.
+/// Mean azimuth and order (difference of ranks) of pairs to one side; ignores outliers, which are of another family.
 std::optional<glm::dvec2> mean_vector(const std::vector<const FloretPair*>& pairs)
 {
     if (pairs.size() < 5) return {};

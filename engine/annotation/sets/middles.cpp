@@ -98,7 +98,7 @@ double Middles::distance_of(const Place& place, double least)
     return known.distance;
 }
 
-/// The mean of `distance`, to the nearest voxel centre outside, and the distance of the farthest voxel centre inside.
+/// Mean of `distance`, to the nearest voxel centre outside the set, and the next smaller distance of a voxel centre.
 double Middles::radius_at(const Place& place, double distance) const
 {
     if (distance == std::numeric_limits<double>::infinity()) return glm::length(glm::dvec3(size_) * spacing_);

@@ -38,7 +38,7 @@ std::string why_elsewhere(const TraceSpace& found, const TraceSpace& expected);
 
 /// Describes the space of a file's positions, for a comment in the file. The text has no line end.
 std::string in_words(const TraceSpace& space, Positions positions);
-/// What the reader of a file must know about the space, as pairs of name and value such as "space" and "physical".
+/// Facts about the space that the reader of a file needs, as pairs of name and value such as "space" and "physical".
 std::vector<std::pair<const char*, std::string>> statements_of(const TraceSpace& space, Positions positions);
 
 }  // namespace shvr

@@ -261,7 +261,7 @@ std::shared_ptr<Hold> Hold::take(const fs::path& journal, std::string_view progr
     }
 }
 
-/// Returns false if another process also tries to take the hold, unless this is the last try; fails if one holds it.
+/// Returns false if another process also tries to take the hold, except on the last try; fails if a process holds it.
 bool Hold::looks_alone(bool is_last_try)
 {
     std::optional<std::vector<WriterMark>> marks = marks_of(journal_, mark_);
