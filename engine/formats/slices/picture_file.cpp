@@ -27,7 +27,7 @@ std::optional<SliceFormat> picture_format(const std::filesystem::path& path)
     const std::string head = read_head(path, 32);
     if (head.starts_with("\x89PNG\r\n\x1a\n")) return SliceFormat::png;
     if (head.starts_with("\xff\xd8\xff")) return SliceFormat::jpeg;
-    // "BM" alone is too weak a sign of a BMP: the four reserved bytes must also be 0, and the next header below 256 B.
+    // "BM" alone is too weak a sign of a BMP: the four reserved bytes must also be 0, and the next header's size < 256.
     const bool is_bmp = head.starts_with("BM") && head.size() >= 18 && head.substr(6, 4) == std::string(4, '\0') &&
                         head.substr(15, 3) == std::string(3, '\0');
     return is_bmp ? std::optional(SliceFormat::bmp) : std::nullopt;

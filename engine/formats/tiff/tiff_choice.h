@@ -31,7 +31,7 @@ struct TiffChoice {
 /// The choice that turns all channels, or all time points, into the slices of one volume.
 inline constexpr const char* AS_SLICES = "slices";
 /// Returns the choice. Fails, listing the choices, if several exist and none is chosen, or if the chosen one is
-/// missing. `may_be_slices`: whether AS_SLICES is allowed, but applying it is left to the caller.
+/// missing. `may_be_slices`: whether AS_SLICES is allowed; applying it is left to the caller.
 TiffChoice choose(const std::string& subject, const OpenOptions& options, const std::vector<std::string>& names,
                   int64_t frames, bool may_be_slices = false);
 

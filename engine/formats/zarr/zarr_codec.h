@@ -20,7 +20,7 @@ void check_stored_size(std::span<const ZarrCompressor> codecs, size_t stored_byt
 /// Decodes into `chunk`, which the result must fill exactly. `name` is the chunk's name in messages.
 void decode_chunk(std::span<const ZarrCompressor> codecs, std::span<const std::byte> stored, std::span<std::byte> chunk,
                   const std::string& name);
-/// Verifies the checksum at the end of `stored` and returns the bytes before it. Fails if the checksum is wrong.
+/// Verifies the checksum at the end of `stored`; returns the bytes before it. Fails on a wrong or incomplete checksum.
 std::span<const std::byte> without_checksum(std::span<const std::byte> stored, const std::string& name);
 
 /// Decompresses a chunk with the given compressor, which must not be crc32c.

@@ -150,7 +150,7 @@ ZipDirectory read_zip_directory(const std::string& path, uint64_t file_bytes, co
     }
     ZipDirectory directory{.offset = end.offset, .bytes = read(read_at, end.offset, end.bytes)};
     std::vector<ZipEntry>& entries = directory.entries = entries_of(path, directory.bytes, end.entries);
-    // Of entries with equal names, the last counts: zarr-python, for one, appends changed attributes and keeps the old.
+    // Of entries with equal names, the last counts: zarr-python, for one, appends changed attributes, keeping old ones.
     std::ranges::reverse(entries);
     std::ranges::stable_sort(entries, {}, &ZipEntry::name);
     const auto repeated = std::ranges::unique(entries, {}, &ZipEntry::name);
