@@ -63,7 +63,7 @@ void join_rows(std::span<LabelledRun> row, std::span<const LabelledRun> before, 
 }
 
 /// Joins a row with the row at the same y in the preceding slice and, for connectivity over corners, with the rows next
-/// to that one. `at` is a position in `before`, which calls advance: callers set it to 0 for a slice's first row only.
+/// to that one. `at` is a position in `before` that each call advances: callers set it to 0 for a slice's first row.
 void join_slices(std::span<LabelledRun> row, int64_t y, SliceRuns& before, size_t& at, Connectivity connectivity,
                  LabelForest& forest)
 {
