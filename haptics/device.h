@@ -29,7 +29,7 @@ struct DeviceState {
     uint32_t jump = 0;     ///< changes when a simulated device is repositioned: such a jump is not rejected as a glitch
     bool calibrated = true;
     /// For devices that report speeds (`DeviceCaps::rate_control`): speeds along and about the axes above, as fractions
-    /// of full deflection, -1 ... 1. They may move the view; position and rotation are their integrals over time.
+    /// of full deflection, -1 ... 1. Speeds may move the view; position and rotation are their integrals over time.
     glm::dvec3 rate{0.0}, turn_rate{0.0};
 };
 

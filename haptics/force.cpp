@@ -12,7 +12,7 @@ namespace {
 constexpr double VELOCITY_CUTOFF_HZ = 100.0;
 /// Maximum length of a tick for the fades: a longer pause of the servo counts as this long.
 constexpr uint64_t MAX_TICK_NS = 10'000'000;
-/// The thesis damps by the motion per tick, not per second. With ticks of this length, both definitions agree.
+/// The thesis damps by motion per tick instead of per second. With ticks of this length, both definitions agree.
 constexpr double THESIS_TICK_S = 0.001;
 
 bool is_place(const DeviceState& state)
@@ -79,7 +79,7 @@ void accept_elsewhere(const DeviceState& state, ForceMemory& memory)
     disengage(memory);
 }
 
-/// Accepts the next state. Motion at constant velocity gives that exact velocity at any tick rate, and so does damping.
+/// Accepts the next state. A constant velocity yields its exact value at any tick rate, so damping is the same, too.
 void accept_next(const DeviceState& state, ForceMemory& memory)
 {
     // If the device's clock stands still or goes back, the velocity is left unchanged.
@@ -244,7 +244,7 @@ double slew_at(const glm::dvec3& velocity)
     return std::clamp(GENTLE_SLEW_N * glm::length(velocity) / GENTLE_SPEED, GENTLE_SLEW_N, SLEW_N);
 }
 
-/// Limits the force to two balls: one around 0, and one around the last force, whose centre lies in the first ball.
+/// Limits the force to two balls: one around 0, and one around the last force; the latter's centre is in the first.
 void limit(const DeviceCaps& caps, const glm::dvec3& wanted, ForceMemory& memory)
 {
     const double held = caps.outputs_force ? force_allowed(caps, memory.heat) : caps.peak_force_n;

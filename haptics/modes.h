@@ -8,8 +8,8 @@ namespace shvr {
 
 struct SurfaceMemory {
     bool is_pinned = false;
-    bool is_armed = true;   ///< whether a surface can hold the probe; cleared by a release, set again once the
-                            ///< relevant share of the ball has been small
+    bool is_armed = true;   ///< whether a surface can hold the probe: a release clears this, a small relevant share of
+                            ///< the ball sets it again
     glm::dvec3 pin{0.0};    ///< physical
     double farthest = 0.0;  ///< smallest offset of the probe from the pin towards the camera since the pin was set;
                             ///< physical units

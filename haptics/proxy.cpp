@@ -38,7 +38,7 @@ struct Chord {
             moments.length += b - a;
             moments.first += 0.5 * (b * b - a * a);
             moments.second += (b * b * b - a * a * a) / 3.0;
-            // Adding the lowest set bit carries through the lowest run; the & clears the run and the carried bit.
+            // Adding the lowest set bit carries through the lowest run; the & then clears the run and the carried bit.
             bits &= bits + (bits & (0u - bits));
         }
         voxel = word_last + 1;

@@ -16,8 +16,8 @@ namespace shvr {
 struct KnownPart {
     glm::dvec3 reach{0.0};  ///< distance of the planes from the centre along each axis, at most the radius
     double share =
-        0.0;  ///< fraction of the ball's volume; 0 where the centre itself is unknown. Exact for one cut; several
-              ///< are multiplied
+        0.0;  ///< share of the ball's volume; 0 if the centre is unknown. Exact for one cut; for several cuts, a
+              ///< product of shares
 };
 
 struct RelevancePatch {

@@ -20,7 +20,7 @@ inline constexpr double HEAT_WINDOW_S = 10.0;
 struct HeatMemory {
     double square = 0.0;  ///< N^2
 };
-/// Returns the maximum force now: the peak while the motors are cool, then less and less down to the continuous force.
+/// Returns the maximum force now: the peak while the motors are cool; as they warm up, down to the continuous force.
 double force_allowed(const DeviceCaps& caps, const HeatMemory& heat);
 void add_heat(const glm::dvec3& force_n, double dt_s, HeatMemory& heat);
 

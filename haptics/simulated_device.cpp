@@ -22,7 +22,7 @@ glm::dmat2 exponential(glm::dmat2 a)
     return sum;
 }
 
-/// Returns the exact motion over a tick with constant wish and force, so any hand and tick length is stable.
+/// Returns the exact motion over a tick with constant wish and force. Being exact, it is stable for any hand and tick.
 glm::dmat2 propagator_of(const HandModel& hand)
 {
     if (hand.mass_kg > 0.0) {

@@ -42,7 +42,7 @@ public:
     explicit SimulatedDevice(const HandModel& model = MOUSE_HAND);
     Latest<HandWish>& wish() { return wish_; }
 
-    /// A hand with a mass stands for a device with motors; the mouse has none, though forces move its hand.
+    /// A hand with a mass stands for a device with motors. The mouse has no motors, although forces move its hand.
     DeviceCaps caps() const noexcept override;
     /// Advances the hand by one tick. The result is always `fresh`; `time_ns` counts ticks.
     ReadResult read(DeviceState& state) noexcept override;

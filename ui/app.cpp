@@ -65,7 +65,7 @@ App::App(const AppOptions& options) : options_(options), window_("SHVR", options
         if (!*log_) fail(options.log.string(), ": cannot be written; expected a file for the log of actions");
         bench_->log_to([this](const std::string& line) { *log_ << with_present_time(line) << std::endl; });
     }
-    // Errors of opening are shown over the start page, since no document is open then.
+    // Errors while opening are shown over the start page, since no document is open then.
     if (!options.input.empty())
         bench_->begin_open(options.input, options.settings);
     else

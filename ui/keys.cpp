@@ -86,7 +86,7 @@ double rate(const Shortcut& shortcut, int mods)
     return shortcut.is_slowed() && (mods & GLFW_MOD_SHIFT) ? SLOWED : 1.0;
 }
 
-/// Binds the pressed key to the shortcut that awaits one. Modifiers alone are ignored.
+/// Binds the pressed key to the shortcut that awaits a key. Modifiers alone are ignored.
 void bind(const KeyEvent& event, const Model& model, Actions& actions)
 {
     const Shortcut* const shortcut = shortcut_named(model.awaits_key);

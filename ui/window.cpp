@@ -107,7 +107,7 @@ struct Window::Input {
                (down(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT) ? GLFW_MOD_SHIFT : 0) |
                (down(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT) ? GLFW_MOD_ALT : 0);
     }
-    /// Call after Dear ImGui has installed its callbacks. Replaces them; Window::tell_ui passes events on to it.
+    /// Call after Dear ImGui has installed its callbacks, which are replaced; Window::tell_ui passes events on to it.
     void listen_to_keys() const
     {
         glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scancode, int action, int mods) {

@@ -19,8 +19,8 @@ namespace shvr {
 /// Syncs the folder that contains `path`, so that a new or renamed file survives a power cut.
 void sync_folder(const std::filesystem::path& path);
 
-/// Returns the file to which a path leads, following symbolic links, even dangling ones. Writers replace links, so
-/// callers resolve an output path given by the user first, to write the file where the link leads.
+/// Returns the file to which a path leads, following symbolic links, even dangling ones. Writers replace a link itself.
+/// To write the file where a link leads, callers first resolve an output path that the user gave.
 std::filesystem::path link_target(const std::filesystem::path& path);
 
 /// Removes the temporary files that killed writers left in a folder: those of dead processes of this host, and those of
@@ -46,7 +46,7 @@ public:
     AtomicWriter& operator=(const AtomicWriter&) = delete;
 
     void append(std::span<const std::byte> content);
-    /// Overwrites bytes already written, for formats that need it. Must not be combined with `append`.
+    /// Overwrites bytes already written, for formats that have to do so. Must not be combined with `append`.
     void write_at(int64_t offset, std::span<const std::byte> content);
     /// Fails if fewer bytes were written.
     void read_back(int64_t offset, std::span<std::byte> content) const;

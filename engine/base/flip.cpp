@@ -98,7 +98,7 @@ Plane blurred_as_seen(const Plane& plane, const Sensitivity& sensitivity, double
     if (sensitivity.a2 == 0.0) return result;
     const auto weights2 = gaussian_weights(sigma_of(sensitivity.b2), radius);
     const Plane second = filtered(plane, weights2, weights2, progress);
-    // The middle weight of a 1D kernel that sums to 1 is the reciprocal of the unscaled kernel's sum; squared for 2D.
+    // In a 1D kernel normalised to a sum of 1, the middle weight is 1 / the unscaled kernel's sum; squared for 2D.
     const auto volume_of = [&](double a, double b, const std::vector<double>& weights) {
         const double middle = weights[size_t(radius)];
         return a * std::sqrt(std::numbers::pi / b) / (middle * middle);

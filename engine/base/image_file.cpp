@@ -103,7 +103,7 @@ struct PngImage {
     ~PngImage() { png_image_free(&image); }
 };
 
-/// Calls libpng, which reports errors by longjmp. The stack frames skipped then must hold no object with a destructor.
+/// Calls libpng, which reports errors by longjmp. The skipped stack frames must not contain objects with destructors.
 template <class Call>
 bool succeeds(png_structp png, const Call& call)
 {
@@ -281,7 +281,7 @@ Image8 decode_png(Bytes file, std::string_view name)
         fail(name, ": is not a valid PNG file: ", png.image.message);
     }
     png.image.format = PNG_FORMAT_RGBA;
-    // Without this flag, libpng takes 16-bit files without a gAMA chunk as linear, although hardly any of them are.
+    // Without this flag, libpng takes 16-bit files without a gAMA chunk as linear, which hardly any such file is.
     png.image.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;
     Image8 decoded{int(png.image.width), int(png.image.height), std::vector<uint8_t>(PNG_IMAGE_SIZE(png.image))};
     if (png_image_finish_read(&png.image, nullptr, decoded.rgba.data(), 0, nullptr) == 0) {

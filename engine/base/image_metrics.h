@@ -44,7 +44,7 @@ struct Tolerance {
     double max_mean_error = 0.0;       ///< as PixelDifference::mean_error
 };
 inline constexpr Tolerance EXACT_TOLERANCE{};
-/// Limits for the same arithmetic on another driver or processor. max_mean_error detects a tiny bias of all pixels.
+/// Limits for the same arithmetic on another driver or processor. max_mean_error detects a tiny overall bias.
 inline constexpr Tolerance TIGHT_TOLERANCE{.max_abs = 2.0, .max_fraction_over_1 = 0.0005, .max_mean_error = 1e-4};
 
 /// Lists every exceeded limit with the value found; null if no limit is exceeded.

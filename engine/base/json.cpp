@@ -42,7 +42,7 @@ std::string shown_key(const std::string& key)
     return shortened(quoted.substr(1, quoted.size() - 2));
 }
 
-/// Returns the parser's message, without its list of expected tokens and in printable ASCII, since it quotes raw bytes.
+/// Returns the parser's message in printable ASCII (the parser quotes raw bytes), without its list of expected tokens.
 std::string reason_of(const json::exception& error)
 {
     std::string reason = error.what();

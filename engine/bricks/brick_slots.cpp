@@ -46,7 +46,7 @@ void BrickSlots::list_evictable(BrickNeed below)
 
 std::optional<uint32_t> BrickSlots::next_evictable(BrickNeed below)
 {
-    // Entries may be outdated: a listed brick may now be needed, or have been used and thus be out of order.
+    // Entries may be outdated: a listed brick may now be needed, or may have been used since, which changes its order.
     while (!evictable_is_stale_ && !evictable_.empty()) {
         const Slot& slot = slots_[evictable_.back().slot];
         const bool is_needed = slot.key && need_(*slot.key) != BrickNeed::none;

@@ -117,7 +117,7 @@ std::vector<Size3> ThresholdBricks::missing(const VoxelBox& box, double threshol
     return bricks;
 }
 
-/// Reads all bricks of a layer together, so that a larger block of the file is decoded only once for all of them.
+/// Reads all bricks of a layer together, so that a block of the file that spans several bricks is decoded only once.
 ThresholdBricks::Bricks ThresholdBricks::read(const VolumeSource& source, const std::vector<Size3>& bricks,
                                               double threshold)
 {

@@ -25,7 +25,7 @@ public:
     /// The address of a slot, packed into one word as kernels read it.
     uint32_t packed(uint32_t slot) const;
 
-    /// Stages a brick for upload to its slot with the next batch. May wait for the batch before the previous one.
+    /// Stages a brick for upload to its slot with the next batch. May wait until the batch before the last is uploaded.
     void stage(uint32_t slot, const BrickTexels& texels);
     void flush() { uploads_.flush(); }
     /// Bricks uploaded so far.

@@ -143,7 +143,7 @@ public:
     virtual Presence presence_of(const BrickKey& key) const = 0;
     /// Whether rays are known to have visited the brick.
     virtual bool is_drawn(const BrickKey& key) const = 0;
-    /// A number that changes whenever results of is_drawn() or presence_of() may change other than through places().
+    /// A number that changes whenever results of is_drawn() or presence_of() may change without a change of places().
     virtual uint64_t visits_revision() const = 0;
     /// Also requests the bricks within `reach[level]` bricks of visited bricks, because ambient light comes from them.
     /// An empty `reach` requests none.
@@ -170,8 +170,8 @@ public:
     virtual uint64_t places_revision() const = 0;
     /// The volume's handles for kernels that work on a region of level 0.
     virtual VolumeBinding atlas(FrameGraph& graph) = 0;
-    /// The bricks that overlap a box of voxels; they keep their slots until the next call. Null if some are not on the
-    /// device yet; these are then loaded first. `wait`: reads missing bricks now, and fails if it cannot.
+    /// The bricks that overlap a box of voxels; they keep their slots until the next call. Null if some of them are not
+    /// on the device yet; these are then loaded first. `wait`: reads missing bricks now, and fails if it cannot.
     virtual std::optional<RegionBricks> region(const VoxelBox& voxels, bool wait) = 0;
 
     /// Counts of paged bricks, for reports.

@@ -13,7 +13,7 @@ namespace shvr {
 namespace {
 
 constexpr double LAST_CODE = 65535.0;
-/// A sloped segment whose opacity is below this at both ends can be interpolated in a small table.
+/// A sloped segment can be interpolated in a small table if its opacity is below this value at both ends.
 constexpr double MAX_SLOPED = 0.999;
 
 uint32_t whole_rows(uint32_t texels)
@@ -35,7 +35,7 @@ void append_depths(std::vector<glm::vec4>& texels, std::span<const float> depths
     }
 }
 
-/// Appends a texel per entry: the optical depth at the entry and at its next neighbours (front, back, both).
+/// Appends a texel per entry: the optical depth at the entry, and at the next entries along front, back and both.
 void append_depths_of_steps(std::vector<glm::vec4>& texels, std::span<const float> depths)
 {
     const uint32_t side = STEP_TABLE_SIDE;

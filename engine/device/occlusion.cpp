@@ -15,7 +15,7 @@ static_assert(MAX_OCCLUSION_RADIUS == OCCLUSION_MAX_RADIUS);
 
 namespace {
 
-/// Light reaches beyond the radius by the lift of rays off surfaces, half the largest cell, and the voxel itself.
+/// Light comes from up to this much beyond the radius: rays start off the surface, plus half a cell and the voxel.
 constexpr double MARGIN_VOXELS = 8.0;
 
 /// Scratch memory for `bricks` paged bricks; resident bricks need less.
@@ -244,7 +244,7 @@ std::vector<int> Occlusion::reach() const
     return reach;
 }
 
-/// Whether a brick within `reach` bricks of `key` is painted. For coarse bricks: whether any voxel is painted at all.
+/// Whether a brick within `reach` bricks of `key` is painted. For coarse bricks: whether there is any paint at all.
 bool Occlusion::is_painted(const BrickKey& key, int reach) const
 {
     if (mask_->empty() || key.level > 0) return !mask_->empty();

@@ -50,7 +50,7 @@ int kept_levels(int levels)
     return std::min(levels, int(gpu::PAGE_MISSING));
 }
 
-/// Fails if less than half of the slots is left for finer bricks, unless all bricks have slots.
+/// Fails if fewer than half of the slots remain for finer bricks, unless there are slots for all bricks.
 void check_coarsest(const VolumeInfo& info, int levels, AtlasCodes codes, uint64_t slots)
 {
     const int64_t bricks = brick_total(info.size, levels - 1);

@@ -15,12 +15,12 @@ namespace shvr {
 namespace {
 
 // The following constants divide the device memory that is free when a volume is loaded.
-/// A resident volume leaves this many sixteenths of that memory free, for tables and pictures drawn in parts.
+/// A resident volume leaves this many sixteenths of that free memory for tables and pictures drawn in parts.
 constexpr uint64_t PICTURE_SIXTEENTHS = 1;
 /// Minimum reserved for pictures and tables: one or two megabytes for tables, the directory of bricks, and pictures
 /// drawn in parts of 64 x 64 pixels.
 constexpr uint64_t MIN_PICTURE_BYTES = uint64_t{4} << 20;
-/// Fifths of that memory for paged bricks; the rest is for pictures, mask and surfaces, which may grow.
+/// Fifths of that free memory for paged bricks; the rest is for pictures, mask and surfaces, which may grow.
 constexpr uint64_t PAGED_FIFTHS = 3;
 /// Fifths for paged bricks if there is ambient occlusion, which takes 0.7 times as much memory as bricks of 16 bits and
 /// 1.3 times as much as those of 8 bits.
@@ -189,7 +189,7 @@ void Scene::load_paged(const IntensityWindow& window, AtlasCodes codes, uint64_t
     }
 }
 
-/// Returns false if memory is short (drivers overstate it, other programs use some) and bricks can be paged.
+/// Returns false if memory is too short (drivers overstate it, other programs use some) but bricks can be paged.
 bool Scene::load_resident(const IntensityWindow& window)
 {
     const AtlasCodes codes = codes_of(memory_, *source_, options_);

@@ -71,8 +71,8 @@ public:
     const VolumeStatistics& statistics() const { return statistics_; }
     const gpu::DeviceTraits& traits() const { return memory_.device().traits(); }
     DeviceVolume& volume() { return *volume_; }
-    /// Whether pictures draw the finest level everywhere because the source has no other: a larger budget would make
-    /// the volume resident, and budgets must not change pictures. Live views draw coarser levels as needed.
+    /// Whether pictures draw the finest level everywhere because the source has no other level: a larger budget would
+    /// make the volume resident, and budgets must not change pictures. Live views draw coarser levels as needed.
     bool draws_finest() const { return draws_finest_; }
     /// Decides which voxels a brush or touch may select if several values share a code; null if each has its own code.
     ThresholdBricks* threshold_bricks() { return threshold_bricks_.get(); }

@@ -11,7 +11,7 @@
 
 namespace shvr::gpu {
 
-/// For each resource type, the maximum number that a kernel binds. For each size, the maximum of all kernels.
+/// Of each resource type, the largest number that any kernel binds; of each size, the maximum over all kernels.
 inline constexpr uint32_t MAX_STORAGE_IMAGES = 13, MAX_STORAGE_BUFFERS = 6, MAX_SAMPLED_IMAGES = 4;
 inline constexpr uint32_t MAX_PUSH_BYTES = 128, MAX_GROUP_THREADS = 128, MAX_SHARED_BYTES = 10592;
 /// Size of the largest buffer that does not grow with the volume: union-find parents of 256^3 voxels (regions/).

@@ -166,7 +166,7 @@ void Submission::Frame::record()
             record_barrier(chunks.back(), {STAGE_COMPUTE | STAGE_TRANSFER, STAGE_COMPUTE | STAGE_TRANSFER, true});
         else if (step.barrier)
             record_barrier(chunks.back(), *step.barrier);
-        // The device writes this timestamp once all earlier submissions are complete; otherwise the rest of their time
+        // The device writes this timestamp once all earlier submissions are complete; otherwise, the time until then
         // would count as part of this pass.
         if (is_timed)
             vkCmdWriteTimestamp2(chunks.back(), VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries, uint32_t(2 * i));

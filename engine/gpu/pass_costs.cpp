@@ -14,7 +14,7 @@ double PassCosts::ms(const std::string& kernel, uint64_t threads, bool has_tiles
 void PassCosts::learn(const std::string& kernel, uint64_t threads, double ms)
 {
     if (threads == 0 || !(ms >= 0.0)) return;
-    // A pass with fewer threads does not fill the device, so its time measures latency instead of throughput.
+    // A pass with fewer threads than FULL does not fill the device: its time measures latency instead of throughput.
     constexpr uint64_t FULL = 4096;
     const double seen = ms / double(std::max(threads, FULL));
     const auto [known, is_new] = ms_per_thread_.emplace(kernel, seen);

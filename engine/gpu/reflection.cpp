@@ -56,7 +56,7 @@ struct Reflector {
         return members;
     }
 
-    /// Returns a block's members; for a block that only holds a struct or an array of structs, the struct's members.
+    /// Returns a block's members or, if the block only holds a struct or an array of structs, the struct's members.
     std::vector<KernelInterface::Member> block_members(spvc_type_id id) const
     {
         spvc_type block = spvc_compiler_get_type_handle(compiler, id);

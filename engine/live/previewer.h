@@ -24,7 +24,7 @@ public:
     explicit Previewer(Annotator& annotator) : annotator_(annotator), query_(annotator.renderer()) {}
 
     /// Sets the wanted preview: one dab of `brush`, as returned by `in_session`, at the single position of its path.
-    /// Null: no preview. Call it in every frame: if nothing has changed, it only compares.
+    /// Null: no preview. Call it in every frame: without a change, the call only compares.
     void want(const std::optional<PaintOp>& brush);
     /// Collects a finished answer and submits the next query.
     void advance();

@@ -20,7 +20,7 @@ public:
         double threshold = 0.0;
         bool operator==(const Ball&) const = default;
     };
-    /// Sets the ball. Call it in every frame: if nothing has changed, it only compares.
+    /// Sets the ball. Call it in every frame: without a change, the call only compares.
     void want(const std::optional<Ball>& ball) { wanted_ = ball; }
     /// Collects a finished answer and submits the next query. Fails if the ball is larger than a brush may be.
     void advance();

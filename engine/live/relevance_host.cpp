@@ -23,7 +23,7 @@ bool RelevancePlace::covers(const glm::dvec3& centre, double radius) const
     const glm::dvec3 lower = (centre - radius) / spacing, upper = (centre + radius) / spacing;
     for (int axis = 0; axis < 3; ++axis) {
         if (!std::isfinite(lower[axis]) || !std::isfinite(upper[axis])) return false;
-        // A ball entirely outside the volume along an axis contains no voxels, so its relevance needs no bits.
+        // A ball entirely outside the volume along an axis contains no voxels, so no bits are needed for it.
         if (upper[axis] <= 0.0 || lower[axis] >= double(level_size[axis])) return true;
     }
     const glm::dvec3 least = glm::max(lower, glm::dvec3(0.0)), most = glm::min(upper, glm::dvec3(level_size));

@@ -21,8 +21,8 @@ RelevancePlace relevance_place(const VolumeSource& source, const RegionWish& wis
 
 /// Finds the voxels at or above the threshold in a box of a level. `source` must include the density offsets.
 RelevanceBits relevance_on_host(const VolumeSource& source, int level, const VoxelBox& box, double threshold);
-/// The same, but excludes unpainted voxels whose intensities cannot be felt; apply_limits applies all other limits. A
-/// coarser level's voxel is painted if at least half of the voxels it covers are. `mask`: null if nothing is painted.
+/// Like relevance_on_host() above, but excludes unpainted voxels whose intensities cannot be felt; apply_limits applies
+/// other limits. A coarser level's voxel is painted if at least half of its voxels are. `mask`: null if unpainted.
 RelevanceBits relevance_on_host(const VolumeSource& source, int level, const VoxelBox& box, double threshold,
                                 const FeltLimits& limits, const Mask* mask);
 

@@ -107,7 +107,7 @@ bool Screen::is_loading() const
     return renderer_.volume().state() == DeviceVolume::State::loading;
 }
 
-/// Lets another pane load bricks, since the volume loads for one pane at a time. Interrupted panes redraw later.
+/// Lets another pane load bricks: the volume loads bricks for one pane at a time. Interrupted panes redraw later.
 void Screen::give_turn(size_t part)
 {
     if (part == turn_) return;

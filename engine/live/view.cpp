@@ -520,7 +520,7 @@ void View::account(const gpu::FrameResult& result, const Running& done)
         for (const gpu::PassReport& pass : result.passes) note(pass.name, pass.gpu_ms, waits(pass));
     // Passes may overlap, so their times may add up to more than the total time.
     const double ms = host_tells_time() ? host_ms : result.gpu_ms;
-    // If only the host can measure the time, all of it is charged to the most expensive pass.
+    // If only the host can measure the time, all of the frame's time is charged to the most expensive pass.
     if (host_tells_time() && !result.passes.empty()) {
         const auto rays = std::ranges::find(result.passes, "raycast", &gpu::PassReport::name);
         const bool has_rays = rays != result.passes.end();

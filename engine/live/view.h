@@ -65,7 +65,7 @@ public:
     void advance();
     // The steps of advance(), for owners of several views. Such an owner reports the scene's changes to its views.
     void collect() { reap(); }
-    // `ahead_ms`: device time allowed in flight in addition to `in_flight_ms`, as the caller will not poll that long.
+    // `ahead_ms`: device time allowed in flight in addition to `in_flight_ms`, while the caller cannot poll.
     void submit_sketches(double ahead_ms = 0.0);  ///< submits only the work that is_sketched() requires
     void submit_due(double ahead_ms = 0.0);
     /// Whether the requested sight is shown in the whole picture, even if coarsely.
@@ -80,7 +80,7 @@ public:
     bool complete() const;
     /// The camera of the picture in layers(); null before the first picture.
     const Camera* shown_camera() const { return shown_sight_ ? &shown_sight_->shot.camera : nullptr; }
-    /// A number, for callers that show the layers, that changes with the result of layers().
+    /// A number that changes whenever the result of layers() does, for callers that show the layers.
     uint64_t revision() const { return revision_; }
 
     /// Images to copy over each other, from back to front. Each is an rgba8_unorm image (with red and blue swapped if

@@ -219,7 +219,7 @@ std::vector<std::string> camera_sides()
 std::string side_of_largest_face(const VolumeInfo& volume)
 {
     const glm::dvec3 extent = glm::dvec3(volume.size) * volume.spacing;
-    // Two faces share one side, so the ratio of their areas is the ratio of their other sides, which cannot overflow.
+    // Two faces share one side, so the ratio of their areas is the ratio of their other sides, without an overflow.
     const bool right_is_larger = extent.y > 2.0 * extent.x, top_is_larger = extent.y > 2.0 * extent.z;
     if (!right_is_larger && !top_is_larger) return "front";
     return extent.z >= extent.x ? "right" : "top";

@@ -258,7 +258,7 @@ void for_each_covered(const Stroke& stroke, const glm::uvec2& origin, const Pixe
     const glm::dvec2 upper = glm::min(glm::ceil(glm::max(from, to) + reach), glm::dvec2(pane.end));
     const glm::dvec2 way = to - from;
     const double square = glm::dot(way, way);
-    // Finds the short piece of each row that a long stroke covers, so that the rest of the row can be skipped.
+    // Finds the short piece that a long stroke covers in each row, so that the rest of the row can be skipped.
     const auto x_at = [&](double y) {
         return way.y == 0.0 ? 0.0 : from.x + std::clamp((y - from.y) / way.y, 0.0, 1.0) * way.x;
     };

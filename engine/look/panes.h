@@ -14,7 +14,7 @@ namespace shvr {
 enum class Arrangement {
     single,
     stereo,    ///< one pane per eye, or one pane for both eyes
-    overview,  ///< the camera's view, and maps from the top, the front and the right that show the camera's frustum
+    overview,  ///< the camera's view, and three maps (from top, front and right) that show the camera's frustum
     slices     ///< the camera's view, and three slices through the probe, perpendicular to z, y and x
 };
 inline constexpr Spelling<Arrangement> ARRANGEMENTS[] = {{Arrangement::single, "single"},

@@ -45,7 +45,7 @@ public:
     Written take_written() { return std::exchange(written_, {}); }
 
 private:
-    /// Whether the forest is large enough to be changed; a smaller one is rebuilt as fast as the small hierarchy.
+    /// Whether the forest is large enough for changes; a smaller forest is rebuilt as fast as the small hierarchy.
     bool may_grow() const { return base_list_ > 2 * MAX_SURFACES_ADDED; }
     void remove(uint64_t key);
     void set_added(const SurfaceTree& tree);

@@ -64,7 +64,7 @@ float guard_of_sample_bits(const glm::uvec3& cell_counts)
     return float(1.0 + CODES * (3.0 * of_floats + of_parts * (1.0 + 1.0 / 4.0 + 1.0 / 16.0)));
 }
 
-/// Computes the sample bits. The bit of a sample between the voxels of two cells is in the upper cell.
+/// Computes the sample bits. The bit of a sample between voxels of two cells is stored in the upper of these cells.
 void sample_bits(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input)
 {
     if (!volume.sample_bits) return;

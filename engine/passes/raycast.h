@@ -21,7 +21,7 @@ struct RaycastOcclusion {
     std::vector<gpu::OcclusionSegment> segments{};  ///< curve from arriving to visible light; if empty, a power law
 };
 
-/// Returns log2 of the shininess if it is a power of two, so kernels can square; else gpu::NOT_A_POWER_OF_TWO.
+/// Returns log2 of the shininess if it is a power of two, for which kernels can square; else NOT_A_POWER_OF_TWO.
 uint32_t shininess_squarings(float shininess);
 
 /// Rays that wait at bricks missing on the device and resume in a later graph (shaders/raycast.h, KEPT_ALL).

@@ -167,7 +167,7 @@ void PictureJob::begin_parts()
     }
 }
 
-/// Returns the largest part side at which memory holds two parts: a part at a border needs images of its own size.
+/// Returns the largest part side at which memory holds two parts: parts at a border need images of their own size.
 uint32_t PictureJob::part_side()
 {
     gpu::Memory& memory = renderer_.memory();
@@ -351,7 +351,7 @@ void PictureJob::catch_up()
 bool PictureJob::draw_completely(const PicturePart& part, bool waits)
 {
     DeviceVolume& volume = scene().volume();
-    // Other callers may have set another view since the last step, which made the drawing stale: set the view again.
+    // Other callers may have set another view since the last step, making the drawing stale: set the view again.
     look_at(scene(), look_, pane().shot, part);
     if (!rounds_) {
         if (area_of(part) != PixelBox{glm::uvec2(0), part.pixels}.area()) volume.forget_visits();

@@ -12,7 +12,7 @@ double reference_length(const VolumeInfo& info)
     return std::min({info.spacing.x, info.spacing.y, info.spacing.z});
 }
 
-/// Returns the direction towards the light in volume space. The light is fixed to the camera, and moves with it.
+/// Returns the direction towards the light in volume space. The light has a fixed direction relative to the camera.
 glm::dvec3 light_direction(const Light& light, const Camera& camera)
 {
     const glm::dvec3 over_the_shoulder(0.3, 0.5, 1.0);

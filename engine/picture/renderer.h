@@ -75,7 +75,7 @@ public:
     std::unique_ptr<Scene> begin_loading(std::shared_ptr<const VolumeSource> source, const VolumeStatistics& statistics,
                                          const RenderSettings& settings, bool with_occlusion, const Document& document);
     bool fits_beside(const VolumeSource& source, const RenderSettings& settings, bool with_occlusion);
-    /// Returns the source. If it would be paged and has too few coarser levels, adds them, reading it once. Any thread.
+    /// Returns the source. If it would be paged and lacks coarser levels, makes levels by reading it once. Any thread.
     std::shared_ptr<const VolumeSource> with_levels(std::shared_ptr<const VolumeSource> source,
                                                     const RenderSettings& settings, bool with_occlusion,
                                                     const Progress& progress = {}) const;

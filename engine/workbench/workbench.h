@@ -47,8 +47,8 @@ public:
     void take(Document::Read read) { services_.opener.take(std::move(read)); }
     void say(std::string text, Weight weight = Weight::done) { desk_.say(std::move(text), weight); }
     /// Call this after any function here threw DeviceLost: drops the workbench's objects on the lost device, calls
-    /// `make_anew`, and displays everything again. Recorded work survives; the part of a running stroke that is not
-    /// painted yet is lost.
+    /// `make_anew`, and displays everything again. Recorded work survives; parts of a running stroke that are not
+    /// painted yet are lost.
     void restart_device(const std::function<void()>& make_anew) { services_.opener.restart_device(make_anew); }
     /// Makes this device move the probe, whatever other devices are connected; its first button paints.
     void use_device(std::shared_ptr<HapticDevice> device, const std::string& name)

@@ -44,7 +44,7 @@ DeviceListing listing_of(const HidListing& device, const HidProfile& profile, bo
 std::unique_ptr<HapticDevice> open_device(const DeviceOptions& options, const std::string& id);
 
 /// Opens the first usable device of HID, Inverse3 and OpenHaptics. Returns null if no device is present. If devices are
-/// present but none can be used, fails with the reason of the first.
+/// present but none can be used, fails with the reason of the first device.
 std::unique_ptr<HapticDevice> open_first_device(const DeviceOptions& options);
 
 }  // namespace shvr

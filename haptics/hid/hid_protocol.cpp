@@ -39,7 +39,7 @@ void put_value(const HidField& field, double value, std::span<uint8_t> payload)
     put_raw(field, uint32_t(int64_t(raw)), payload);
 }
 
-/// Returns the bytes after the id; empty if id or length of `report` differ from those of `expected`.
+/// Returns the bytes after the id; empty if the id or length of `report` differs from that of `expected`.
 std::span<const uint8_t> payload_of(const HidReport& expected, std::span<const uint8_t> report)
 {
     const size_t id_bytes = expected.id == 0 ? 0 : 1;

@@ -62,7 +62,7 @@ uint16_t read_id(const JsonNode& node)
     return node.parsed(parse, "four hexadecimal digits, as in \"0x2988\"");
 }
 
-/// Escapes the only two of the printable ASCII characters in device names that JSON does not allow in a string.
+/// Escapes the quotation mark and the backslash: JSON forbids no other printable ASCII characters in a string.
 std::string quoted(const std::string& text)
 {
     std::string result = "\"";

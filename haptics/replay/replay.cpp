@@ -41,7 +41,7 @@ ForceSettings chosen(const TraceSettings& settings, const ReplayOptions& options
     return force;
 }
 
-/// The device of a replay: returns the trace's answers, or those of a modelled device led along the trace's path.
+/// The device of a replay: gives the trace's answers, or those of a modelled device that is led along the trace's path.
 class Player {
 public:
     Player(const Trace& trace, const ReplayOptions& options) : trace_(trace)
@@ -123,7 +123,7 @@ class Tally {
 public:
     explicit Tally(ReplayResult& result) : result_(result) { result_.hash = FNV_BASIS; }
 
-    /// Switches to another device: its first force is not compared or combined with a force of the previous device.
+    /// Switches to another device, whose first force is not compared or combined with a force of the previous device.
     void swap()
     {
         ++result_.swaps;

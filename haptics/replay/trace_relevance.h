@@ -30,7 +30,7 @@ struct TraceRelevance {
 
 /// `before`: the patch encoded last; its sequence is 0 if there is none.
 TraceRelevance note_relevance(const RelevancePatch& patch, const RelevancePatch& before);
-/// Decodes all of `patch` except its time. Returns false if position or runs are inconsistent, leaving it unusable.
+/// Decodes all of `patch` except its time. Returns false, with `patch` unusable, if position or runs are inconsistent.
 bool read_relevance(const TraceRelevance& noted, const RelevancePatch& before, RelevancePatch& patch);
 
 }  // namespace shvr

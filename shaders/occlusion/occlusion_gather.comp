@@ -78,7 +78,7 @@ uint near_of(const OcclusionGatherParams params, const OcclusionJob job, ivec3 v
     // Densities curve within a voxel: the voxel's mean density is the density at its centre plus `bend`.
     const float bend = dot(before + behind - 2.0 * middle, vec3(0.125 / side));
     const float code = middle + dot(slope, beside) + bend;
-    // Ignores extremes beyond the neighbours: where neighbours show nothing, cells count as empty and are never read.
+    // Limits the code to the range of the voxel and its neighbours: cells whose range shows nothing are never read.
     const vec3 least = min(before, behind), most = max(before, behind);
     const float lower = min(middle, min(least.x, min(least.y, least.z)));
     const float upper = max(middle, max(most.x, max(most.y, most.z)));

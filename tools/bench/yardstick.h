@@ -3,7 +3,7 @@
 
 namespace shvr::bench {
 
-/// Returns the milliseconds in which `threads` threads each do the same fixed arithmetic: a few at present.
+/// Returns the milliseconds that `threads` threads need for the same fixed arithmetic each; at present, a few.
 double yardstick_ms(int threads);
 
 }  // namespace shvr::bench

@@ -59,7 +59,7 @@ private:
     std::unordered_map<std::string, FileDetails> details_;
 };
 
-/// Compares names in natural order: numbers by value, letters without case, which only breaks ties.
+/// Compares names in natural order: numbers by value, letters regardless of case, which only breaks ties.
 bool is_naturally_before(std::string_view a, std::string_view b);
 std::string size_text(int64_t bytes);  ///< "1.4 GB": 1000 bytes are 1 kB
 

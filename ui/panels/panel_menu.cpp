@@ -192,7 +192,7 @@ void view_menu(const Model& model, Actions& actions)
 
 // ---- Paint, Probe and Help
 
-/// Returns the keys of a shortcut of which a version exists for each of the first groups.
+/// Returns the keys of the shortcut named `prefix` and the group's number; the first groups have such shortcuts.
 std::string keys_of(const char* prefix, uint8_t group, const Model& model)
 {
     const Shortcut* const shortcut = shortcut_named(sentence(prefix, int(group)));

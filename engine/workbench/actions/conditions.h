@@ -24,7 +24,7 @@ std::string why_without_node(const Model& model);
 std::string why_without_group(const Model& model, uint8_t group);
 /// Condition of an operation on groups.
 std::string why_not_operated(const Model& model, const GroupOperation& operation);
-/// `name`: name of a transfer function; only those that the user saved (not those that ship) can be changed.
+/// `name`: name of a transfer function; those that ship cannot be changed, only those that the user saved.
 std::string why_not_own(const Model& model, const std::string& name);
 
 }  // namespace shvr::ui

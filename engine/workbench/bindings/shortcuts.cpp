@@ -513,7 +513,7 @@ constexpr Shortcut SHORTCUTS[] = {
     both("move_back", MOVE_KEYS, "Move back", Mode::hold, move<0, 0, -1>, "S", true),
     both("move_left", MOVE_KEYS, "Move left", Mode::hold, move<-1, 0, 0>, "A", true),
     both("move_right", MOVE_KEYS, "Move right", Mode::hold, move<1, 0, 0>, "D", true),
-    // In the thesis (4.2.3), Q moves up and E down; here Q moves down and E up, as in today's programs.
+    // In the thesis (4.2.3), Q moves up and E moves down; here, Q moves down and E up, as in present programs.
     {"move_down", MOVE_KEYS, "Move down", Mode::hold, move<0, -1, 0>, {"Q", "E"}, true},
     {"move_up", MOVE_KEYS, "Move up", Mode::hold, move<0, 1, 0>, {"E", "Q"}, true},
 

@@ -46,7 +46,7 @@ bool is_refuted(const std::vector<int64_t>& values, const std::vector<int64_t>& 
     return false;
 }
 
-/// Returns how much the logarithm of the counts per assumed value varies from bin to bin, summed over the histogram.
+/// Returns how much the logarithm of (voxels per assumed value) varies from bin to bin, summed over the histogram.
 double roughness(const std::vector<int64_t>& values, const std::vector<int64_t>& counts)
 {
     double sum = 0.0, last = std::numeric_limits<double>::quiet_NaN();

@@ -61,7 +61,7 @@ struct Desk {
 
     void say(std::string text, Weight weight = Weight::done);
     /// Logs `actions` in place of the action being carried out. For example, the point seen at a pixel depends on the
-    /// paint and the bricks of that moment, so a replayable log states the point's position instead of the pixel.
+    /// paint and bricks at that moment, so a replayable log states the point's position instead of the pixel.
     void log_instead(const Actions& actions);
     DocumentModel document_model() const;
     /// Empty objects, to which the references in a model refer while no document is open.

@@ -14,7 +14,7 @@
 
 namespace shvr::ui {
 
-/// A function that must be set when a service is constructed: leaving such a member unset does not compile.
+/// A function that must be set when its owner is constructed: a member of this type that is not set does not compile.
 template <class Signature>
 class Call : public std::function<Signature> {
 public:

@@ -239,7 +239,7 @@ Session Document::saved_session() const
 
 // ---- Saving ---------------------------------------------------------------------------------------------------------
 
-/// Returns the settings as they would be saved, but without surfaces, which are many and never change here.
+/// Returns the settings as they would be saved, without surfaces, which can be many and never change here.
 Session Document::edits() const
 {
     Session edits = saved_session();

@@ -64,8 +64,8 @@ struct Document {
     std::string outside;                ///< files that the session may not write, since they are outside its folder;
                                         ///< empty: none, or the user has agreed (annotation_files.h)
     bool drags_node = false;            ///< the selection follows the probe
-    glm::dvec3 drag_from{0.0};          ///< position of the tools when the drag began, in voxels:
-                                        ///< one selected node moves to the probe, several parts by the same offset
+    glm::dvec3 drag_from{0.0};          ///< where the tools were when the drag began, in voxels: one selected node
+                                        ///< moves to the probe, several parts move along
 
     // State of the open document that is not part of the work
     std::optional<glm::dvec3> measuring_from;               ///< first end of a measurement that lacks its second end
@@ -96,10 +96,10 @@ struct Document {
     void choose_for_volume(Session& of) const;
     double probe_radius() const { return brush().radius_voxels * volume().spacing.x; }
     ProbeLook probe_look() const;
-    /// Returns an operation that paints with the current brush at the probe's position; its path is empty.
+    /// Returns an operation, with an empty path, that paints with the current brush at the probe's position.
     PaintOp stroke() const;
     PaintOp dab() const;
-    /// Returns the node to select or to link with: the nearest one within reach, other than the selected node.
+    /// Returns the node to select or to link to: within reach, the nearest node except the selected one.
     std::optional<uint32_t> nearby_node() const;
     TraceMarks trace_marks() const;
     /// Returns the operation that would move the selection if the drag ended now.
@@ -108,8 +108,8 @@ struct Document {
     /// Returns whether the last cut can be mended: both nodes still exist and are not linked.
     bool is_cut() const;
     /// Returns the largest ball around a point that fits into the structure above the paint threshold. `way`: direction
-    /// of a line of sight; the structure is then that which the line enters there, at most the probe's radius to its
-    /// side (local_radius.h). Null if unknown. Reads 30^3 voxels, up to 124^3 in wide structures.
+    /// of a line of sight; if given, the structure is the one that this line enters, at most the probe's radius beside
+    /// the line (local_radius.h). Null if unknown. Reads 30^3 voxels, up to 124^3 in wide structures.
     std::optional<LocalBall> ball_at(const glm::dvec3& voxel, const std::optional<glm::dvec3>& way = {}) const;
     /// Returns the bounding box of the probe's ball; it contains at least one voxel of the volume.
     VoxelBox voxels_around_probe() const;
@@ -141,7 +141,7 @@ struct Document {
     /// Writes view, probe and similar settings to the journal, if there is a journal. The history gets no step.
     void keep_settings();
     /// Adds all settings that changed since the last step to the history, as one step. Call it only while no stroke is
-    /// running. Returns whether any had changed.
+    /// running. Returns whether any setting had changed.
     bool record_settings();
     /// Applies the settings that the history holds after undo or redo.
     void take_settings();
@@ -159,7 +159,7 @@ struct Document {
     /// Returns whether settings need saving. Returns false if some are overridden, since these apply to this run only.
     bool has_settings_to_save() const { return !edits_are_saved() && overridden_.empty(); }
     /// Begins a save under another name. Work continues under that name, with its whole history; existing files stay.
-    /// Commands are refused until the save has ended. `path`: the new session's. Fails if such a file exists.
+    /// Commands are refused until the save has ended. `path`: where to save the new session; must not exist.
     std::shared_ptr<Saving> begin_save_as(const std::filesystem::path& path);
     /// Returns a function that writes the current mask, offsets, trace and session to new files, on any thread, and
     /// returns the new session's path. `path`: the path to use; empty: an unused name nearby. Fails if the file exists.

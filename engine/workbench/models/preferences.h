@@ -21,7 +21,7 @@ constexpr std::span<const Spelling<KeySet>> spellings_of(KeySet)
     return KEY_SETS;
 }
 
-/// Chords that replace the defaults, by id of the shortcut. With an empty list, the shortcut has no key.
+/// Chords that replace the defaults, by the shortcut's id. A shortcut with an empty list has no key.
 using KeyChanges = std::map<std::string, std::vector<std::string>>;
 
 /// Selects whether a device that reports speeds (a SpaceMouse) moves the view or the probe.

@@ -27,7 +27,7 @@ public:
     void act(const LoadAnnotation& action);
     void act(const PreviewLoad& action);
     void act(const DismissUnclearFile& action);
-    /// Asks the user which kind of file it is. Fails in a script, where no user can answer.
+    /// Asks the user what kind of file this is. Fails in a script, where no user can answer.
     void ask_what_it_is(UnclearFile file);
 
     CandidateModel model() const

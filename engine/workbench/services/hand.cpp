@@ -113,7 +113,7 @@ void Hand::follow_grab()
     others_.look_from(camera_of_grab(*grab_, device.position_m, device.rotation, units_per_m));
 }
 
-/// Moves the view at the speed that the puck reports. A puck that reports nothing is at rest: its speed is then 0.
+/// Moves the view at the speed that the puck reports. A puck that reports nothing is at rest, with a speed of 0.
 void Hand::follow_puck()
 {
     const double now = options_.now_s();

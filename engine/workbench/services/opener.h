@@ -59,9 +59,9 @@ public:
     /// Returns the name of the file being opened; empty: none.
     std::string_view opening_name() const;
     void cancel();
-    /// Cancels the opening if its job number is `number`. Returns whether that was the case.
+    /// If the opening has the job number `number`, cancels the opening and returns true.
     bool cancel(Jobs::Number number);
-    /// Handles a finished job if it is the reading job of the opening. Returns whether it is.
+    /// If a finished job is the reading job of the opening, handles the job and returns true.
     bool end_reading(const Jobs::Finished& job);
     /// add_loading: adds the opening if it is loading onto the device. add_read: adds it if its reading job just ended.
     void add_loading(std::vector<Jobs::State>& states) const;

@@ -21,7 +21,7 @@ public:
     void wait() const { screenshots_.wait(); }
     /// Cancels the large screenshot in progress, if any, with a message that names `by` as the cause.
     void drop_large(const char* by);
-    /// Cancels the large screenshot in progress if its job number is `number`. Returns whether that was the case.
+    /// If the large screenshot in progress has the job number `number`, cancels the screenshot and returns true.
     bool cancel(Jobs::Number number);
     /// Adds the state of the large screenshot in progress, if any.
     void add_loading(std::vector<Jobs::State>& states) const;

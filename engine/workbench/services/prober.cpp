@@ -14,7 +14,7 @@ double depth_of(const Camera& camera, const glm::dvec3& point)
     return glm::dot(point - camera.eye, axes_of(camera).forward);
 }
 
-/// Returns the point under a pixel, at the probe's depth; if the probe is behind the eye, just in front of the eye.
+/// Returns the point under a pixel, at the probe's depth or, if the probe is behind the eye, just in front of the eye.
 glm::dvec3 in_plane_of(const glm::dvec3& probe, const Pane& seen, const glm::dvec2& pixel)
 {
     const Camera& camera = seen.shot.camera;

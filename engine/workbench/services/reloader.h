@@ -28,7 +28,7 @@ public:
     bool is_wanted() const { return reload_ != nullptr; }
     /// Cancels the reload. Returns whether there was one.
     bool cancel();
-    /// Cancels the reload if its job number is `number`. Returns whether that was the case.
+    /// If the reload has the job number `number`, cancels the reload and returns true.
     bool cancel(Jobs::Number number);
     /// Forgets the requested reload, since another operation loads the volume with the current settings anyway.
     void forget() { reload_.reset(); }

@@ -75,7 +75,7 @@ private:
         bool is_asked_for = true;  ///< false: success is not reported
     };
     std::unique_ptr<Save> save_;
-    /// The next save, which starts once the stroke or save in progress has ended. Empty path: saves in place.
+    /// The next save, which starts once the stroke or save in progress has ended. Empty path: a save in place.
     std::optional<std::filesystem::path> wanted_save_;
     std::string unpainted_;          ///< why part of the stroke before the save could not be painted
     std::string save_failure_;       ///< why the last save failed; empty if it succeeded

@@ -12,7 +12,7 @@ void put_bits(const RelevancePlace& place, const RelevanceBits& bits, RelevanceP
 void put_mirrored(const MirroredRelevance& mirrored, RelevancePatch& patch);
 
 /// Returns which voxels the hand may feel: those in the session's felt groups that the picture shows. If the session
-/// lets the hand feel hidden voxels, they need not be shown.
+/// lets the hand feel hidden voxels, voxels need not be shown.
 FeltLimits felt_limits(const Session& session, const Camera& camera, const VolumeInfo& volume,
                        const IntensityWindow& window);
 

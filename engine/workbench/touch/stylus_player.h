@@ -30,7 +30,7 @@ struct StylusPoint {
     bool is_pressed = false;  ///< state of the first button
 };
 /// Returns the probe's path. `by_hand`: the recording pulls a simulated hand and stylus; if false, the probe follows
-/// the recording. `source` must include offsets. In recordings of older versions, hidden voxels are felt, as then.
+/// the recording. `source` must include offsets. For recordings of older versions, hidden voxels are felt, too.
 std::vector<StylusPoint> play_stylus(const Trace& trace, const GuideSettings& guide, bool by_hand,
                                      std::shared_ptr<const VolumeSource> source, const Mask& mask);
 
