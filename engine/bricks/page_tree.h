@@ -48,7 +48,7 @@ struct PageTree {
 };
 
 /// `levels`: as VolumeSource::levels. `shows`: whether a brick, or any finer brick below it, may have visible voxels.
-/// If a view needs more than `max_leaves` leaves, halves its detail until they suffice.
+/// If a view needs more than `max_leaves` leaves, halves the view's detail until `max_leaves` suffice.
 PageTree make_page_tree(const VolumeInfo& volume, int levels, const PageView& view,
                         const std::function<bool(const BrickKey&)>& shows, size_t max_leaves = size_t{1} << 17);
 

@@ -112,7 +112,7 @@ uint64_t atlas_bytes(const gpu::Memory& memory, const VolumeInfo& info, AtlasCod
     const uint64_t room = left - std::min(left, beside);
     // Layouts of images round up.
     const uint64_t fewest = std::min(PagedVolume::MIN_SLOTS + 8, uint64_t(2 * finest_bricks(info) + 1)) * with_light;
-    const uint64_t rest = budget - left + reserved_bytes + fewest;  // more than half of the budget in the message
+    const uint64_t rest = budget - left + reserved_bytes + fewest;  // over half of the budget that the message states
     if (room < fewest)
         throw gpu::BudgetError(
             sentence(info.name, ": a picture needs ", gpu::mebibytes(beside + fewest), " of device memory",
@@ -180,7 +180,7 @@ void Scene::load_paged(const IntensityWindow& window, AtlasCodes codes, uint64_t
             volume_ = std::make_unique<PagedVolume>(executor_, memory_, offsets_, window, paged);
         } catch (const gpu::BudgetError&) {
             throw;
-        } catch (const gpu::MemoryError&) {  // the driver has less memory than it reports, or no free block so large
+        } catch (const gpu::MemoryError&) {  // the driver has less memory than it reports, or not in one block
             constexpr uint64_t LEAST = uint64_t{16} << 20;
             if (paged.device_bytes / 2 < LEAST) throw;
             paged.device_bytes /= 2;

@@ -50,7 +50,7 @@ void distance(FrameGraph& graph, const VolumeBinding& volume, uint32_t axis, con
     to = pass.write("leap", to);
 }
 
-/// The maximum by which a sample's code may exceed the codes of the voxels that it tests (leap.h): the largest distance
+/// The maximum by which a sample's code may exceed the codes of the voxels of its bit (leap.h): the largest distance
 /// from these voxels, summed over the axes, times the largest difference of codes.
 float guard_of_sample_bits(const glm::uvec3& cell_counts)
 {

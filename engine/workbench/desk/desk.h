@@ -30,7 +30,7 @@ struct WorkbenchOptions {
     /// Folder for preferences, saved transfer functions and the user's copy of the example; empty: there is none.
     std::filesystem::path settings{};
     bool has_preferences = true;      ///< false: uses default preferences, and saves no changes of them
-    std::function<double()> now_s{};  ///< returns the seconds of any clock; null: uses the system's clock
+    std::function<double()> now_s{};  ///< a clock, in seconds; null: uses the system's clock
     std::string version{};            ///< the program's, for reports; empty: unknown
     DeviceSource devices{};           ///< lists and opens haptic devices; without functions: those of this machine
     /// Slices follow a probe that leaves their plane, by an action that is logged; false: only the script moves them.

@@ -108,8 +108,8 @@ struct Document {
     /// Returns whether the last cut can be mended: both nodes still exist and are not linked.
     bool is_cut() const;
     /// Returns the largest ball around a point that fits into the structure above the paint threshold. `way`: direction
-    /// of a line of sight; if given, the structure is the one that this line enters, at most the probe's radius beside
-    /// the line (local_radius.h). Null if unknown. Reads 30^3 voxels, up to 124^3 in wide structures.
+    /// of a line of sight; if given, the structure is the one that this line enters, at most the probe's radius away
+    /// from it (local_radius.h). Null if unknown. Reads 30^3 voxels, up to 124^3 in wide structures.
     std::optional<LocalBall> ball_at(const glm::dvec3& voxel, const std::optional<glm::dvec3>& way = {}) const;
     /// Returns the bounding box of the probe's ball; it contains at least one voxel of the volume.
     VoxelBox voxels_around_probe() const;

@@ -7,9 +7,9 @@
 // With a haptic device, the servo always runs and only the device moves the probe: its workspace is aligned with the
 // view (right, up, towards the user). Without one, the mouse acts as a device held by a hand that has no mass and
 // yields to the force: the servo then runs only while assistance is on or the stylus is recorded; otherwise the probe
-// is at the mouse, and nothing is computed. A device that moves the view has its own servo, which gives no force, and
+// is at the mouse, and nothing is computed. A device that moves the view has its own servo, which exerts no force, and
 // the mouse moves the probe. Main thread; servo and mirror have their own threads, so that a stalled main thread does
-// not fade the force.
+// not make the force fade.
 
 #include <memory>
 #include <string>
