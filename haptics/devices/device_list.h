@@ -21,7 +21,7 @@ struct DeviceListing {
     std::string id;  ///< id for `open_device`; stable as long as the device stays plugged in
     std::string name, serial;
     std::string connection;  ///< "/dev/hidraw3", "service on port 10001", "libHD.so"
-    bool has_force = false;  ///< the device can give force once forces are allowed
+    bool has_force = false;  ///< the device can exert forces once they are allowed
     std::string why_no_force;
     std::string why_unusable;  ///< empty: it can be opened
 };

@@ -15,7 +15,7 @@ layout(constant_id = 1) const uint COUNT_WORK = 0u;
 // images.
 layout(constant_id = 2) const uint GROUP_WIDTH = 8u;
 layout(constant_id = 3) const uint SHININESS_SQUARINGS = NOT_A_POWER_OF_TWO;
-// 1: records which bricks rays visit, which complete pictures do not need.
+// 1: records the bricks that rays visit; complete pictures do not need this.
 layout(constant_id = 5) const uint FEEDBACK = 0u;
 layout(constant_id = 6) const uint DISTANCE_BLEND = 0u;
 #ifdef INTEGRATED
