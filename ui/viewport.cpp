@@ -259,7 +259,7 @@ void Viewport::scroll(const ScrollEvent& event, const Model& model, Actions& act
     pane_ = pane_at(event.at, model);
     const Pane::Kind kind = kind_of_pane(model);
     const bool is_slice = kind == Pane::Kind::slice, has_control = event.mods & GLFW_MOD_CONTROL;
-    if (is_slice != has_control)  // the wheel pushes in slices, and with Ctrl elsewhere; otherwise it zooms
+    if (is_slice != has_control)  // in slices, or with Ctrl elsewhere, the wheel pushes the probe
         actions.emplace_back(PushProbe{pane_, event.steps});
     else if (kind == Pane::Kind::map)
         actions.emplace_back(Move{{0.0, 0.0, HEIGHTS_PER_STEP * event.steps}});

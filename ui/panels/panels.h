@@ -83,7 +83,7 @@ void shortcut_item(const char* id, const Model& model, Actions& actions, bool is
 /// Draws items of the View menu: stored views, the pivot of rotation, drawings over pictures.
 void kept_views_menu(const Model& model, Actions& actions);
 void sight_items(const Model& model, Actions& actions);
-/// Draws, within the trace panel, the radius of new nodes.
+/// Draws, within the trace panel, the settings for the radius of new nodes.
 void new_nodes(const Model& model, Actions& actions);
 /// Shows the file chooser while the model requests it.
 void open_dialog(const Model& model, Actions& actions);
