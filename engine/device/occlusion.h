@@ -1,8 +1,8 @@
 #pragma once
-// Local ambient occlusion of the bricks on the device: tracks which cells and values are stale, and updates them in
-// slices, nearest to the eye first. Its images use the slots of the density atlas, so they need no table of their own.
-// Allocates nothing on the device until a look asks for ambient occlusion.
-//
+// Local ambient occlusion of the bricks on the device: tracks which cells (coarse opacity) and values (light at voxels)
+// are stale, and updates them in batches, nearest to the eye first. Its images use the slots of the density atlas, so
+// they need no table of their own. Allocates nothing on the device until a look asks for ambient occlusion.
+// Changes, and the data that they make stale:
 //   new bricks, painted voxels, cut      -> cells of the changed bricks, and the values that their light reaches
 //   transfer function, radius            -> all cells, all values
 //   rays, hemisphere                     -> all values

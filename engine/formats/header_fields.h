@@ -67,7 +67,7 @@ void apply_spacing(VolumeInfo& info, const std::optional<glm::dvec3>& spacing, c
 /// Warns that a file opened as a scan holds labels. The warning begins with `holds`, as in "the image holds labels".
 /// Does nothing if `warnings` already says so, as in a project, which keeps the warnings of its source.
 void warn_of_labels(std::vector<std::string>& warnings, const char* holds);
-/// Likewise for files of this program that state their content: warns for "mask" and "offsets", ignores other values.
+/// Likewise for files written by this program, whose header names their content: warns if it is "mask" or "offsets".
 void warn_of_content(std::vector<std::string>& warnings, std::string_view content);
 
 inline constexpr const char* NO_BYTE_ORDER = "no byte order stated; little-endian assumed";

@@ -87,7 +87,7 @@ void Device::check(VkResult result, const char* call) const
     gpu::check(result, call);
 }
 
-/// Returns the driver's fault report, with only the first of many addresses and codes; empty if there is none.
+/// Returns the driver's fault report, with at most the first MOST addresses and codes; empty if there is none.
 std::string Device::fault_in_words() const
 {
     constexpr uint32_t MOST = 4;

@@ -12,7 +12,7 @@
 namespace shvr {
 
 struct Stamp {
-    glm::ivec2 begin{0};            ///< pixel of the pane for the upper left corner; may be outside
+    glm::ivec2 begin{0};            ///< the stamp's upper left corner in the pane; may be outside the pane
     glm::ivec2 pixels{0};           ///< width and height
     std::vector<uint8_t> coverage;  ///< row by row from the top; 255: fully the stamp's colour
     glm::dvec3 color{1.0};          ///< linear light

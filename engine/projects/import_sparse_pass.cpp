@@ -1,5 +1,5 @@
-// Visits only chunks in which the source stores something, in an order in which all chunks below a coarser chunk are
-// adjacent. All workers make level 0; coarser levels are made in order, each with one unfinished chunk in memory.
+// Visits only chunks in which the source stores something, ordered so that all chunks below a coarser chunk come
+// consecutively. Workers make level 0 in parallel; each coarser level keeps only one unfinished chunk in memory.
 
 #include <algorithm>
 #include <array>

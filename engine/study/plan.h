@@ -1,6 +1,6 @@
 #pragma once
-// The order in which an annotator works through the true graph. Follows the study's instruction to annotate bundles,
-// starting with those joined to adaxial veins. A pure function; any thread.
+// The order in which a simulated annotator works through the ground-truth graph. Follows the study's instruction to
+// annotate bundles, starting with those joined to adaxial veins. A pure function; any thread.
 
 #include <vector>
 

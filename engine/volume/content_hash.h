@@ -48,7 +48,7 @@ inline constexpr int64_t MAX_VOXELS_IN_SLICES = MAX_VOXELS_EXACT;
 /// Returns the kind for a volume: chunks if it is larger than that and at most an eighth of its chunks is not uniform.
 HashKind kind_for(const VolumeInfo& info, int64_t varied_chunks);
 
-/// Collects the digests of chunks for a hash in chunks, in any order. Any thread may add.
+/// Collects the digests of single chunks for a HashKind::chunks hash, in any order. Any thread may add.
 class ChunkHasher {
 public:
     explicit ChunkHasher(const VolumeInfo& info);

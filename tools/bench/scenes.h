@@ -46,7 +46,7 @@ struct Run {
     uint64_t budget_device = 0;         ///< bytes; 0: the scene's
 };
 
-/// Returns the runs of a scene, without those that vary a setting without effect on the scene.
+/// Returns the runs of a scene, omitting those that vary only a setting that has no effect on it.
 std::vector<Run> runs_of(const Scene& scene, bool quick);
 /// Returns runs that vary step, resolution, opacity limit, pre-integration and sampling at once, spread evenly over the
 /// ranges of all five settings (a Latin hypercube). Equal counts give equal runs.

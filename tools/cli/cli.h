@@ -101,7 +101,7 @@ Opened open(const std::string& path, const Common& common, LongWork& work, Work:
             const CheckSession& check = {});
 /// Fails if no camera has that name, unless a journal exists, which may hold more cameras. Empty: the session's camera.
 void check_camera(const std::string& name, const Session& session, const VolumeInfo& volume);
-/// Warns about parts found to be unreadable since the last call, since bricks are read while pictures are drawn.
+/// Warns about parts newly found unreadable since the last call: drawing reads bricks, so it can discover more.
 void warn_of_gaps(Opened& opened, const std::string& path, const Common& common);
 
 /// {device, host, by_resource}

@@ -308,11 +308,11 @@ private:
     SettingValues kept_;                         ///< the present values
     SettingValues journaled_kept_;               ///< the kept settings in the journal
     RecordNumber last_kept_ = 0;                 ///< number of the journal's last `kept` record
-    RecordNumber known_kept_ = 0;                ///< number of the last `kept` record in the session's file; 0: unknown
-    size_t kept_since_whole_ = 0;                ///< number of `kept` records since the last one that has all sections
-    bool keeps_settings_ = false;                ///< the caller keeps some settings
-    bool kept_from_outside_ = false;             ///< the state of the session's file must still be recorded
-    bool cannot_keep_ = false;                   ///< opening the journal failed; the first command reports why
+    RecordNumber known_kept_ = 0;     ///< number of the last `kept` record that the session's file has; 0: unknown
+    size_t kept_since_whole_ = 0;     ///< number of `kept` records since the last one that has all sections
+    bool keeps_settings_ = false;     ///< the caller keeps some settings
+    bool kept_from_outside_ = false;  ///< the state of the session's file must still be recorded
+    bool cannot_keep_ = false;        ///< opening the journal failed; the first command reports why
     /// The space of the positions in records from `since` on; the first entry also applies to all earlier records.
     struct SpaceSince {
         RecordNumber since = 0;

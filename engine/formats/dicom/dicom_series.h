@@ -24,7 +24,7 @@ struct DicomVolume {
 std::vector<DicomFile> choose_series(const std::string& where, std::vector<DicomFile> files,
                                      const OpenOptions& options);
 
-/// Arranges the slices of `files` as a volume. `files` must not be empty, and all of one series.
+/// Arranges the slices of `files`, at least one and all of the same series, as a volume.
 DicomVolume arrange_slices(const std::string& where, const std::vector<DicomFile>& files, const OpenOptions& options);
 
 /// For messages: "1 slice", "2 slices".

@@ -75,7 +75,7 @@ struct FloretPlace {
 /// Returns the place of floret k of n, counted from the axis outwards, such that each has an equal area (Vogel 1979).
 /// Successive florets, or in a bijugate head successive pairs of opposite florets, differ by the divergence angle.
 FloretPlace floret_place(const PhantomSpec& spec, int k);
-/// Returns by how much the numbers of two florets that are neighbours on a parastichy can differ, ascending.
+/// Returns, in ascending order, the possible differences between the numbers of neighbouring florets on a parastichy.
 std::vector<int> parastichy_steps(const PhantomSpec& spec);
 
 }  // namespace shvr

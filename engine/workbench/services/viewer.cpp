@@ -97,7 +97,7 @@ void Viewer::show_slices(SliceSettings slices)
 /// If the probe has left the plane of the slices, moves the slices to the probe, whatever moved the probe.
 void Viewer::follow_slices()
 {
-    constexpr double STIR_VOXELS = 0.05;  // ignores slight motion, as of a stylus; the user may have moved the slices
+    constexpr double STIR_VOXELS = 0.05;  // so that a stylus's jitter does not pull back slices that the user moved
     if (!options_.slices_follow) return;
     Document& document = *document_;
     const glm::dvec3 voxel = document.probe_voxel();

@@ -17,7 +17,7 @@ from test_remote import RemoteTest  # noqa: E402
 
 NGINX = shutil.which("nginx", path=os.environ.get("PATH", "") + ":/usr/sbin")
 OPENSSL = shutil.which("openssl")
-HOST = "scans.example"   # of the certificate; requests for it go to this machine through the proxy only
+HOST = "scans.example"   # in the certificate; requests for it go to this machine through the proxy only
 
 CONFIGURATION = """
 {user}

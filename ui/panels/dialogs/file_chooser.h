@@ -65,7 +65,7 @@ private:
     std::optional<std::filesystem::path> accepted_;
     Asked<Verdict> verdict_;  ///< verdict on `judged_`
     std::filesystem::path judged_;
-    Asked<bool> is_folder_;  ///< whether `followed_` is a folder; if so, it is listed
+    Asked<bool> is_folder_;  ///< whether `followed_`, the path to open, is a folder, which the chooser enters
     std::filesystem::path followed_;
     std::optional<double> waiting_since_;  ///< start of the wait, by Dear ImGui's clock
     bool all_files_ = false;
