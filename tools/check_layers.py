@@ -54,6 +54,7 @@ MAY_INCLUDE = {
     "engine/annotation/trace engine/annotation/writers engine/projects",
     "engine/session": "engine/base engine/touch engine/volume engine/look engine/annotation engine/annotation/files "
     "engine/annotation/trace engine/remote engine/formats engine/formats/zarr engine/projects",
+    "engine/movie": "engine/base engine/look engine/session",
     "engine/jobs": "engine/base",
     "engine/pages": "engine/base",
     "engine/tasks": "engine/base engine/volume engine/remote engine/look engine/components engine/formats/export engine/annotation "
@@ -125,7 +126,7 @@ MAY_INCLUDE = {
     "tools/golden tools/bench tools/report",
 }
 # Rooms that must work without a device: none may include a room that depends on one, directly or indirectly.
-WITHOUT_DEVICE = ["engine/session", "engine/projects", "engine/bricks", "engine/annotation/work", "engine/tasks", "haptics",
+WITHOUT_DEVICE = ["engine/session", "engine/movie", "engine/projects", "engine/bricks", "engine/annotation/work", "engine/tasks", "haptics",
                   "haptics/devices"]
 WITH_DEVICE = {"engine/gpu", "engine/passes", "engine/device"}
 MAX_SOURCES = 30  # per folder
