@@ -120,7 +120,7 @@ MAY_INCLUDE = {
     "tests/reference tools/golden tools/report",
     "tools/golden": "engine/base engine/annotation/script engine/session engine/live engine/pages shaders",
     "tools": "engine/base engine/remote engine/pages engine/volume engine/graph engine/gpu engine/projects engine/annotation/script engine/annotation/trace "
-    "engine/annotation/work engine/annotation/writers engine/session engine/jobs engine/tasks engine/picture engine/live "
+    "engine/annotation/work engine/annotation/writers engine/session engine/jobs engine/tasks engine/movie engine/picture engine/live "
     "haptics haptics/devices haptics/hid ui engine/study engine/study/report engine/workbench "
     "engine/workbench/touch "
     "tools/golden tools/bench tools/report",

@@ -17,7 +17,7 @@ SHVR = os.environ.get("SHVR", "build/dev/shvr")
 TIMEOUT_S = 500  # of one start; ctest ends a file after 600
 
 # A line of progress on standard error, printed by any command that takes longer than a second.
-PROGRESS = re.compile(r": (\d+ %(, [\d.]+ MB/s)?(, (\d+ (h|min|s) ?)+ left)?|(\d+ (h|min|s) ?)+ so far)$")
+PROGRESS = re.compile(r": (\d+ %(, [\d.]+ MB/s|, frame \d+ of \d+)?(, (\d+ (h|min|s) ?)+ left)?|(\d+ (h|min|s) ?)+ so far)$")
 
 # Tests neither read nor change the user's own preferences.
 CONFIGURATION = tempfile.TemporaryDirectory(prefix="shvr-config-")

@@ -7,6 +7,7 @@
 #include "engine/picture/picture_file.h"
 #include "engine/session/picture_session.h"
 #include "tools/cli/cli.h"
+#include "tools/cli/movie/render_movie.h"
 
 namespace shvr::cli {
 
@@ -16,6 +17,7 @@ struct RenderCommandOptions {
     Common common;
     std::string input, output, size, camera, transfer_function;
     bool with_session = false;
+    MovieOptions movie;
 };
 
 /// Why a picture is incomplete.
@@ -55,11 +57,9 @@ Picture draw(PictureFile& file, const Opened& opened, const RenderCommandOptions
     return picture;
 }
 
-void run_render(RenderCommandOptions options)
+/// Turns --size and --tf into settings.
+void take_shorthands(RenderCommandOptions& options)
 {
-    check_output("--output", options.output, {".png", ".pfm"});
-    options.output = written_path(options.output).string();
-    check_output_is_not(file_of_input(options.input), options.output);
     if (!options.size.empty()) {
         const glm::uvec2 size = parse_size(options.size);
         options.common.settings.push_back(sentence("render.size=[", size.x, ",", size.y, "]"));
@@ -70,6 +70,22 @@ void run_render(RenderCommandOptions options)
                                           (is_file ? read_text(options.transfer_function, 1 << 20)
                                                    : Json{{"preset", options.transfer_function}}.dump()));
     }
+}
+
+void run_render(RenderCommandOptions options)
+{
+    if (options.output.empty() == options.movie.path.empty())
+        throw UsageError(options.output.empty() ? "--output is missing; expected -o for a picture, or --movie"
+                                                : "--output and --movie are given; expected one of them");
+    if (!options.movie.path.empty()) {
+        take_shorthands(options);
+        return render_movie(
+            {options.common, options.input, options.camera, options.with_session, std::move(options.movie)});
+    }
+    check_output("--output", options.output, {".png", ".pfm"});
+    options.output = written_path(options.output).string();
+    check_output_is_not(file_of_input(options.input), options.output);
+    take_shorthands(options);
     LongWork work(options.common.quiet);
     const auto check = [&](const Session& session, const VolumeInfo& volume) {
         check_output_is_not(session.volume_path, options.output);
@@ -118,15 +134,13 @@ void run_render(RenderCommandOptions options)
 void add_render(CLI::App& program)
 {
     auto options = std::make_shared<RenderCommandOptions>();
-    CLI::App* command = program.add_subcommand("render", "Makes a picture");
+    CLI::App* command = program.add_subcommand("render", "Makes a picture or a movie");
     command
         ->add_option("INPUT", options->input,
                      "Session (.json), project folder, volume, or a picture that was made here")
         ->required();
-    command
-        ->add_option("-o,--output", options->output,
-                     "Picture to write: .png, or .pfm for linear light in 32-bit floats")
-        ->required();
+    command->add_option("-o,--output", options->output,
+                        "Picture to write: .png, or .pfm for linear light in 32-bit floats");
     command->add_option("--size", options->size, "Pixels, as in 512x384");
     command->add_option("--camera", options->camera, "A camera of the session, a side (front, top, ...) or JSON");
     command->add_option(
@@ -134,6 +148,7 @@ void add_render(CLI::App& program)
         "Transfer function: a preset (bundles, haze, heat, layers, surface), or a JSON file with its points");
     command->add_flag("--with-session", options->with_session,
                       "Keep the session in the .png, so that it can be rendered again, as the window's pictures do");
+    add_movie_options(*command, options->movie);
     add_incomplete_option(*command, options->common,
                           "Write a picture that lacks something, with a warning, instead of failing");
     add_belief_option(*command, options->common);
@@ -144,7 +159,13 @@ void add_render(CLI::App& program)
         "not\n"
         "show; --set render.detail=0 draws all voxels, as a resident volume always is. Either picture is complete:\n"
         "\"detail\" in --json tells which it is.\n\n"
-        "Example:\n  shvr render scan.nhdr -o scan.png --size 800x600 --camera front");
+        "A movie goes from view to view of --keys, slowing down at each: the camera turns the shortest way, and\n"
+        "transfer function, groups, light and cuts change along. --turntable turns at constant speed about the\n"
+        "axis of the volume that points upwards, with --keys in addition. Each run makes the same frames. A .webm or\n"
+        ".mp4 has an opaque background.\n\n"
+        "Example:\n  shvr render scan.nhdr -o scan.png --size 800x600 --camera front\n"
+        "  shvr render project/ --movie turn.webm --turntable 360 --frames 240\n"
+        "  shvr render project/ --movie frames/ --keys 'front,{\"camera\":\"top\",\"cut\":{\"upper\":[99,99,50]}}'");
     command->callback([options] { run_render(*options); });
 }
 

@@ -43,7 +43,7 @@ class Doctor(CliTest):
     def test_programs_that_help_are_missed(self):
         (self.folder / "bin").mkdir()
         said = run("doctor", environment={"PATH": str(self.folder / "bin")}).stdout
-        for package in ("graphviz", "xdg-utils"):
+        for package in ("ffmpeg", "graphviz", "xdg-utils"):
             self.assertIn(f"package {package}", said)
 
 

@@ -143,6 +143,8 @@ void list_missing(MachineReport& report)
     if (!gpu::validation_is_installed())
         missing.push_back({"the Vulkan validation layer", "SHVR_VALIDATION=1", "vulkan-validationlayers", false});
     if (!is_program("dot")) missing.push_back({"the program dot", "shvr profile --graph with .svg", "graphviz", false});
+    if (!is_program("ffmpeg"))
+        missing.push_back({"the program ffmpeg", "shvr render --movie with .webm or .mp4", "ffmpeg", false});
     if (!is_program("xdg-open"))
         missing.push_back({"the program xdg-open", "Help > User manual in the window", "xdg-utils", false});
     for (const FolderReport& folder : report.folders)
