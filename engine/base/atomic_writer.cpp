@@ -167,14 +167,13 @@ void sync_folder(const fs::path& path)
 
 AtomicWriter::AtomicWriter(const fs::path& path)
     : target_(path), old_permissions_(permissions_of_old_file(path)), descriptor_(create())
-{
-    listed_ = list(temporary_.c_str());
-}
+{}
 
 AtomicWriter::~AtomicWriter()
 {
-    if (listed_) *listed_ = nullptr;
+    // Unlisted last, so that a signal never leaves the file behind.
     if (!is_renamed_) ::unlink(temporary_.c_str());
+    if (listed_) *listed_ = nullptr;
 }
 
 void AtomicWriter::append(std::span<const std::byte> content)
@@ -238,9 +237,13 @@ FileDescriptor AtomicWriter::create()
     static std::atomic<unsigned> count = 0;
     while (true) {
         temporary_ = target_.parent_path() / sentence(PREFIX, ::getpid(), "-", count++, "-", host_of_names(), SUFFIX);
+        // Listed before the file exists, so that a signal right after its creation removes it.
+        listed_ = list(temporary_.c_str());
         FileDescriptor descriptor(::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
         if (descriptor) return descriptor;
-        if (errno != EEXIST && errno != EINTR) refuse(errno);
+        const int error_number = errno;
+        if (listed_) *std::exchange(listed_, nullptr) = nullptr;
+        if (error_number != EEXIST && error_number != EINTR) refuse(error_number);
     }
 }
 

@@ -61,10 +61,10 @@ private:
     std::filesystem::path target_;
     std::filesystem::path temporary_;
     std::optional<mode_t> old_permissions_;
+    std::atomic<const char*>* listed_ = nullptr;  ///< the slot in which remove_temporary_files finds the file's name
     FileDescriptor descriptor_;
     bool is_renamed_ = false;
     uint64_t unsynced_bytes_ = 0;
-    std::atomic<const char*>* listed_ = nullptr;  ///< the slot in which remove_temporary_files finds the file's name
 };
 
 }  // namespace shvr

@@ -5,9 +5,11 @@ import signal
 import subprocess
 import time
 import unittest
+from pathlib import Path
 
-from harness import ENVIRONMENT, IS_SLOW, SHVR, CliTest, Volume, read_png_header
+from harness import ENVIRONMENT, IS_SLOW, SHVR, CliTest, Volume, read_png_header, run
 
+STOP_IN_SAVE = Path(SHVR).resolve().parent / "stubs" / "libstop_in_save.so"
 KEYS = ["size", "complete", "passes", "counters", "bytes", "warnings"]
 
 
@@ -256,6 +258,15 @@ class Render(CliTest):
             self.assertIn("" if number == signal.SIGPIPE else "a.png: stopped", said)
             self.assertEqual(picture.read_bytes(), before)
             self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["a.png", "session.json"])
+
+    def test_a_signal_right_after_a_file_is_created_leaves_nothing(self):
+        session = self.write_session(volume={"procedural": "tubes", "size": [16, 16, 16], "seed": 3})
+        result = run("render", session, "-o", self.folder / "a.png", "--size", "16x16", environment={
+            "LD_PRELOAD": str(STOP_IN_SAVE), "SHVR_STOP_AT_CREATE": "1", "SHVR_STOP_SIGNAL": str(int(signal.SIGPIPE)),
+            "XDG_CACHE_HOME": str(self.folder / "cache"), "ASAN_OPTIONS": "verify_asan_link_order=0"})
+        self.assertEqual(result.returncode, -signal.SIGPIPE, result.stderr)
+        left = [path for path in self.folder.rglob("*") if path.name.startswith(".shvr-") or path.name == "a.png"]
+        self.assertEqual(left, [])
 
 
 if __name__ == "__main__":

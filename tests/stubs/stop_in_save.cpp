@@ -1,14 +1,17 @@
 // Ctrl-C in the middle of a save: preloaded before the C library, it sends the signal SHVR_STOP_SIGNAL to the main
 // thread at the first write of another thread into a file of a folder `stopped`. That write returns only when the main
 // thread, which waits for the save meanwhile, has gone to sleep often enough to have seen the signal.
+// With SHVR_STOP_AT_CREATE it sends the signal as soon as the first temporary file (.shvr-...) exists instead.
 
 #include <atomic>
+#include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
 
 #include <dlfcn.h>
+#include <fcntl.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -33,7 +36,7 @@ bool is_main()
 void meet(int file)
 {
     const char* const number = std::getenv("SHVR_STOP_SIGNAL");
-    if (!number || is_sent || is_main()) return;
+    if (!number || std::getenv("SHVR_STOP_AT_CREATE") || is_sent || is_main()) return;
     char link[64], path[4096];
     std::snprintf(link, sizeof link, "/proc/self/fd/%d", file);
     const ssize_t length = readlink(link, path, sizeof path - 1);
@@ -52,6 +55,20 @@ int nanosleep(const timespec* time, timespec* left)
 {
     if (is_sent && is_main()) ++sleeps;
     return next<int(const timespec*, timespec*)>("nanosleep")(time, left);
+}
+
+int open(const char* path, int flags, ...)
+{
+    va_list arguments;
+    va_start(arguments, flags);
+    const unsigned mode = (flags & O_CREAT) ? va_arg(arguments, unsigned) : 0;
+    va_end(arguments);
+    const int file = next<int(const char*, int, ...)>("open")(path, flags, mode);
+    const char* const number = std::getenv("SHVR_STOP_SIGNAL");
+    const bool is_meant = file >= 0 && (flags & O_CREAT) && std::getenv("SHVR_STOP_AT_CREATE") && number;
+    if (is_meant && std::strstr(path, "/.shvr-") && !is_sent.exchange(true))
+        syscall(SYS_tgkill, getpid(), syscall(SYS_gettid), std::atoi(number));
+    return file;
 }
 
 ssize_t write(int file, const void* bytes, size_t count)
