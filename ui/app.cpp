@@ -128,6 +128,8 @@ void App::follow_workbench()
     }
     if (bench_->take_quit()) window_.close();
     window_.set_full_screen(bench_->shows_full_screen());
+    // The end of a job removes its progress, and may show a dialog.
+    if (std::exchange(drew_jobs_, bench_->shows_jobs()) != bench_->shows_jobs()) keep_drawing(AFTERGLOW_S);
     if (std::exchange(drew_cut_box_, bench_->shows_cut_box()) != bench_->shows_cut_box()) keep_drawing(AFTERGLOW_S);
     if (std::exchange(drawn_messages_, bench_->messages().count()) != bench_->messages().count())
         keep_drawing(AFTERGLOW_S);

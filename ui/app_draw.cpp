@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <functional>
+#include <utility>
 
 #include <imgui/imgui.h>
 
@@ -71,6 +72,9 @@ bool App::draw_ui()
     if (!window_.present(layers, viewport_.layout().begin, go_on)) return false;
     undrawable_since_s_.reset();
     if (!options_.screen_texts.empty()) write_screen_texts();
+    // A window that appears without an event, such as a finished job's dialog, needs frames to determine its layout.
+    const int windows = ImGui::GetIO().MetricsRenderWindows;
+    if (std::exchange(drawn_windows_, windows) != windows) keep_drawing(0.0);
     if (is_open && !layers.empty())
         window_.set_title(bench_->document().volume().name + " - SHVR" +
                           (bench_->document().only_looks() ? " (read only)" : ""));

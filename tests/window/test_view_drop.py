@@ -118,6 +118,24 @@ class Drop(Seen):
         self.assertIn("is a volume of 8 16 16 voxels; expected annotation of 16 16 16 voxels", said)
         self.assertNotIn("Opened " + str(mask), said)
 
+    def test_a_preview_that_appears_long_after_the_last_event_is_laid_out(self):
+        side = 320  # so that its preview takes longer than the interface is drawn after an event
+        session = self.write_ball(volume={"procedural": "sphere", "size": [side] * 3})
+        mask = self.folder / "mask.nrrd"
+        header = f"NRRD0004\ntype: uint8\ndimension: 3\nsizes: {side} {side} {side}\nencoding: raw\n\n"
+        mask.write_bytes(header.encode() + b"\3" * side**3)
+        self.open_scan(session, preferences={"hints_seen": 3})
+        self.click_on("File", "##MainMenuBar")
+        self.click_on("Load annotation...", "##Menu_00")
+        self.see("Cancel", "Load annotation")
+        self.do("key", "ctrl+a", "type", "--delay", 20, mask, pause_s=0)
+        self.see(str(mask), "Load annotation")
+        self.press("Enter")
+        self.see("Undo takes it back.", self.PREVIEW)
+        self.see(f"+{side**3}", self.PREVIEW)
+        self.click_on("Cancel", self.PREVIEW)
+        self.finish()
+
     def test_a_label_image_opened_as_a_scan_is_told_of_and_loaded_into_its_scan(self):
         session = self.write_ball(volume={"procedural": "sphere", "size": [16, 16, 16]})
         labels = self.folder / "labels.nrrd"
