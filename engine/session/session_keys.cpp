@@ -321,6 +321,21 @@ void felt_groups_field(Fields& f, std::vector<uint8_t>& groups)
              .standard = "none: everything"});
 }
 
+void density_section(Fields& f, BrushSettings& brush)
+{
+    const About density{
+        .meaning = "density painting, in which the brush also raises intensities; an object with the two keys below",
+        .allowed = "object",
+        .standard = "none"};
+    if (f.has("density", brush.density.has_value())) {
+        if (!brush.density) brush.density.emplace();
+        f.section(
+            "density", [&](Fields& inner) { density_fields(inner, *brush.density); }, density);
+    } else {
+        f.mention("density", density);
+    }
+}
+
 }  // namespace
 
 void fields(Fields& f, Groups& groups)
@@ -423,17 +438,7 @@ void fields(Fields& f, ProbeSettings& probe)
     f.number("opacity", probe.opacity, SHARE, {"opacity of the probe's ball; 0: not drawn"});
     f.flag("silhouette", probe.silhouette, {"true: draws the probe's outline over whatever hides it"});
     f.flag("arrow", probe.arrow, {"true: an arrow points towards the probe when it is out of sight"});
-    const About density{
-        .meaning = "density painting, in which the brush also raises intensities; an object with the two keys below",
-        .allowed = "object",
-        .standard = "none"};
-    if (f.has("density", brush.density.has_value())) {
-        if (!brush.density) brush.density.emplace();
-        f.section(
-            "density", [&](Fields& inner) { density_fields(inner, *brush.density); }, density);
-    } else {
-        f.mention("density", density);
-    }
+    density_section(f, brush);
     f.flag("paints_group", brush.paints_group, {"false, with `probe.density`: the brush changes offsets only"});
     f.check("paints_group", brush.paints_group || brush.density, "true where probe.density is not given");
 }

@@ -285,8 +285,7 @@ void add_stretch(const RaycastParams params, const Ray ray, const Stretch stretc
             }
         }
         if (is_opaque) end_at(params, ray, stretch, x, from.rgb, march);
-        if (is_seen && next > x)
-            add(light_of(params, ray, stretch, line, x, next - x, group_depth), 0.0, march);
+        if (is_seen && next > x) add(light_of(params, ray, stretch, line, x, next - x, group_depth), 0.0, march);
         if (COUNT_WORK != 0u && (is_opaque || is_seen)) {
             note_taken(place, work);
             work.samples += is_seen ? 2u : 0u;
