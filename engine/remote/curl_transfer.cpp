@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "engine/base/error.h"
+#include "engine/base/file.h"
 #include "engine/base/text.h"
 #include "engine/remote/deadlines.h"
 #include "engine/remote/local_host.h"
@@ -114,6 +115,21 @@ bool may_pass(CURLcode code)
     }
 }
 
+/// Curl's own text. Where it ends with the meaning of its code ("Failed to connect to host port 80 after 0 ms: Couldn't
+/// connect to server"), the system's reason takes that place: "Connection refused".
+std::string text_of(const CurlTransfer& transfer, CURLcode code)
+{
+    const std::string meaning = curl_easy_strerror(code);
+    std::string text = transfer.error.data();
+    if (text.empty()) return meaning;
+    const std::string tail = ": " + meaning;
+    if (!text.ends_with(tail)) return text;
+    text.resize(text.size() - tail.size());
+    long reason = 0;
+    curl_easy_getinfo(transfer.handle, CURLINFO_OS_ERRNO, &reason);
+    return reason == 0 ? text : text + ": " + shvr::reason_of(int(reason));
+}
+
 /// Returns the reason of a failure, for the user. Curl's own error text may name a host, but never a query.
 std::string reason_of(const CurlTransfer& transfer, CURLcode code)
 {
@@ -124,7 +140,7 @@ std::string reason_of(const CurlTransfer& transfer, CURLcode code)
         return sentence("the body is longer than ", transfer.request.max_bytes, " bytes; expected at most those");
     if (transfer.header_bytes > MAX_HEADER_BYTES)
         return sentence("the response has more than ", MAX_HEADER_BYTES, " bytes of headers; expected fewer");
-    const std::string text = transfer.error[0] != '\0' ? transfer.error.data() : curl_easy_strerror(code);
+    const std::string text = text_of(transfer, code);
     if (code == CURLE_OPERATION_TIMEDOUT)
         return sentence("no answer in time (", text, "); expected a connection within ", limits.connect_s, " s, ",
                         STALL_BYTES_PER_S, " bytes per second over ", limits.stall_s, " s, and an end within ",

@@ -52,6 +52,11 @@ void pause(double seconds)
     }
 }
 
+std::string after_tries(int64_t tries)
+{
+    return sentence(", after ", tries, tries == 1 ? " try" : " tries");
+}
+
 }  // namespace
 
 /// A want that is being asked for.
@@ -200,8 +205,8 @@ void RemoteFolder::judge(Asking& asking, RemoteResponse&& response) const
             asking.object.is_offline = true;
             return asking.end_with_cached();
         }
-        return asking.end(State::failed, "cannot be read: " + response.failure +
-                                             (may_pass ? sentence(", after ", asking.tries, " tries") : std::string()));
+        return asking.end(State::failed,
+                          "cannot be read: " + response.failure + (may_pass ? after_tries(asking.tries) : ""));
     }
     switch (status) {
         case 200:
@@ -234,9 +239,9 @@ void RemoteFolder::judge(Asking& asking, RemoteResponse&& response) const
         case 416: return asking.end(State::failed, "has fewer bytes than its index says; expected a whole object");
         default: break;
     }
-    asking.end(State::failed, sentence("the server answers with status ", status,
-                                       may_pass ? sentence(", after ", asking.tries, " tries") : std::string(),
-                                       "; expected the object, status 200"));
+    asking.end(State::failed,
+               sentence("the server answers with status ", status, may_pass ? after_tries(asking.tries) : std::string(),
+                        "; expected the object, status 200"));
 }
 
 void RemoteFolder::redirect(Asking& asking, const RemoteResponse& response) const

@@ -207,7 +207,13 @@ class Faults(RemoteTest):
     def test_no_server(self):
         with StoreServer(self.folder) as server:
             address = server.address("x.zarr")
-        self.check_refused("info", address, says=[address, "cannot be read", "after 3 tries"])
+        for tries, words in (("3", "after 3 tries"), ("1", "after 1 try\n")):
+            result = run("info", address, environment={"SHVR_REMOTE_TRIES": tries})
+            self.assertEqual(result.returncode, 1)
+            self.assertIn(address, result.stderr)
+            self.assertIn(": cannot be read: Failed to connect to 127.0.0.1 port", result.stderr)
+            self.assertIn(words, result.stderr)
+            self.assertEqual((result.stderr.count("onnect"), result.stderr.count("Connection refused")), (2, 1), result.stderr)
 
     def test_redirects_are_followed(self):
         self.make()
