@@ -33,6 +33,11 @@ bool is_occupied(const fs::path& path)
     fail(target.string(), ": cannot be written: ", reason_of(error_number));
 }
 
+fs::path container_of(const fs::path& target)
+{
+    return target.parent_path() / sentence(".", target.filename().string(), ".shvr-part");
+}
+
 void make_folder(const fs::path& folder, const fs::path& target)
 {
     if (::mkdir(folder.c_str(), 0777) != 0 && errno != EEXIST) refuse_folder(target, errno);
@@ -106,15 +111,24 @@ fs::path move_to_old_name(const fs::path& folder, const fs::path& path)
     }
 }
 
+void clear_remains(const fs::path& target)
+{
+    const fs::path container = container_of(link_target(plain_path(target)));
+    const FileDescriptor folder(::open(container.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (!folder || ::flock(folder.number(), LOCK_EX | LOCK_NB) != 0) return;
+    std::error_code ignored;
+    fs::remove_all(container, ignored);
+}
+
 AtomicFolder::AtomicFolder(const fs::path& target)
-    : target_(link_target(plain_path(target))),
-      container_(target_.parent_path() / sentence(".", target_.filename().string(), ".shvr-part"))
+    : target_(link_target(plain_path(target))), container_(container_of(target_))
 {
     std::error_code error;
     fs::create_directories(target_.parent_path(), error);
     if (error) fail(target_.parent_path().string(), ": cannot be created: ", error.message());
     make_folder(container_, target_);
     lock_.emplace(locked(container_, target_));
+    unfinished_.emplace(container_.string() + " is left: the next opening or save of its image clears it");
     clear_folder(container_, target_);
     const bool is_new = !is_occupied(target_);
     if (!is_new && !exchanges_names(container_, target_)) inner_ = free_name(target_);
@@ -234,6 +248,7 @@ void AtomicFolder::remove_remains()
     std::error_code ignored;
     if (lock_) fs::remove_all(container_, ignored);
     lock_.reset();
+    unfinished_.reset();
 }
 
 }  // namespace shvr

@@ -7,7 +7,8 @@
 // `commit` fails and leaves both places unchanged.
 //
 // The hidden folder `.NAME.shvr-part` has no content at its top that readers of Zarr would list. The writing process
-// locks it. If a process is killed, the next writer of the same target deletes its remains.
+// locks it. If a process is killed, the next writer of the same target deletes its remains. So does an opening
+// (`clear_remains`).
 //
 // Some network file systems cannot exchange names. There, an existing folder keeps its place: new content goes into a
 // folder inside it with a free name (`inner`). The content becomes valid when the entry file, which names the inner
@@ -22,6 +23,7 @@
 #include <string>
 
 #include "engine/base/file.h"
+#include "engine/base/waits/unfinished_work.h"
 
 namespace shvr {
 
@@ -56,7 +58,12 @@ private:
     std::filesystem::path target_, container_, path_;
     std::string inner_;
     std::optional<FileDescriptor> lock_;
+    std::optional<UnfinishedWork> unfinished_;
 };
+
+/// Removes what a killed writer of `target` has left next to it, unless another process writes it or the file system
+/// has no locks. Never fails.
+void clear_remains(const std::filesystem::path& target);
 
 /// Returns "paint.old", "paint.old2" and so on for "paint": the first name that is not taken.
 std::filesystem::path free_old_name(const std::filesystem::path& path);

@@ -17,6 +17,7 @@
 #include "engine/annotation/work/work.h"
 #include "engine/base/atomic_writer.h"
 #include "engine/base/text.h"
+#include "engine/projects/atomic_folder.h"
 
 namespace shvr {
 
@@ -99,6 +100,8 @@ std::vector<Notice> Work::open(const WorkFiles& files, const Opening& opening)
         for (const fs::path& file : {files.journal, files.mask, files.trace, files.density})
             if (!file.empty()) folders.insert(file.parent_path());
         for (const fs::path& folder : folders) collect_temporary_files(folder);
+        for (const fs::path& image : {files.mask, files.density})
+            if (!image.empty()) clear_remains(image);
     }
     is_fresh_ = opening.start == Start::fresh;
     takes_files_ = opening.belief == Belief::files || is_fresh_;

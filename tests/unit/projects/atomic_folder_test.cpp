@@ -69,6 +69,21 @@ TEST_CASE("a folder that is not committed changes nothing; what a killed process
     CHECK(names_in(target) == "one");
 }
 
+TEST_CASE("what a killed process left is cleared by an opening, and what another one writes is not")
+{
+    const TemporaryFolder folder;
+    const fs::path target = folder.path / "a.zarr", left = folder.path / ".a.zarr.shvr-part";
+    clear_remains(target);  // there is nothing
+    fs::create_directories(left / "new" / "0");
+    clear_remains(target / "");
+    CHECK_FALSE(fs::exists(left));
+    AtomicFolder writing(target);
+    write(writing, "one", "1");
+    clear_remains(target);
+    writing.commit("one");
+    CHECK(names_in(target) == "one");
+}
+
 TEST_CASE("a link to a folder stays, and the folder that it leads to is replaced")
 {
     const TemporaryFolder folder;
