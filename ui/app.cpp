@@ -169,7 +169,8 @@ void App::try_again_soon()
 /// Never loses work: saves before the window closes, and keeps the window open if saving fails.
 bool App::closes()
 {
-    if (options_.stop && *options_.stop && !std::exchange(was_stopped_, true)) {
+    if (options_.stop && *options_.stop && !messages_at_stop_) {
+        messages_at_stop_ = bench_->messages().count();
         bench_->cancel_tasks();
         window_.close();
     }

@@ -91,7 +91,8 @@ private:
     std::vector<InputEvent> held_back_;  ///< input for the frame after held_back_in_frame_
     int held_back_in_frame_ = -1;
     bool was_asked_to_close_ = false;  ///< closing was refused because saving failed; cleared by the next action
-    bool was_stopped_ = false;         ///< the program was asked to stop from outside (AppOptions::stop)
+    /// Number of messages when the program was asked to stop from outside (AppOptions::stop); null: it was not.
+    std::optional<uint64_t> messages_at_stop_;
     std::string frame_failure_;
     std::optional<double> undrawn_since_s_;  ///< time since which every frame has failed
 

@@ -167,7 +167,11 @@ AppReport App::report()
     AppReport report = report_.measured();
     report.gpu_name = renderer_->device().traits().name;
     report.status = bench_->messages().last();
-    for (const Message& message : bench_->messages().all()) report.messages.push_back(message.text);
+    for (const Message& message : bench_->messages().all()) {
+        report.messages.push_back(message.text);
+        const bool is_loss = messages_at_stop_ && message.number > *messages_at_stop_ && message.weight != Weight::done;
+        if (is_loss) report.stop_losses.push_back(message.text);
+    }
     report.previewed_voxels = bench_->previewed_at_stroke();
     if (bench_->is_open()) {
         const Document& document = bench_->document();

@@ -36,7 +36,8 @@ struct AppReport {
     size_t undoable = 0, redoable = 0;
     std::optional<int64_t> previewed_voxels;  ///< size of the preview at the start of the last stroke; null: none
     std::string status;
-    std::vector<std::string> messages;  ///< last messages
+    std::vector<std::string> messages;     ///< last messages
+    std::vector<std::string> stop_losses;  ///< warnings and errors since AppOptions::stop
     std::vector<std::string> validation_messages;
 };
 

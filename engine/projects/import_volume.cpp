@@ -5,6 +5,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
+#include "engine/base/waits/unfinished_work.h"
 #include "engine/formats/readers.h"
 #include "engine/formats/zarr/consolidated.h"
 #include "engine/formats/zarr/project.h"
@@ -47,6 +48,21 @@ void check_labels(const VolumeInfo& info, const PreparationOptions& preparation)
              "; expected no preparation but --crop, since there is no label between two labels");
 }
 
+/// What becomes of NAME.part, for the message that an import or export was stopped.
+const char* use_of_part(const ImportOptions& options)
+{
+    return options.label_image       ? "the same command replaces it, rm -r removes it"
+           : options.gaps == nullptr ? "the same import goes on from there; rm -r removes it"
+                                     : "it is of no further use; rm -r removes it";
+}
+
+/// For a signal that ends the program while the folder cannot be removed.
+std::string remains_in_words(const fs::path& part, const ImportOptions& options)
+{
+    return sentence(part.string(),
+                    options.label_image ? " is left: " : " keeps what the import has done: ", use_of_part(options));
+}
+
 class Import {
 public:
     /// Returns a callback for the progress of finding the range of values, which a reversal needs.
@@ -71,6 +87,7 @@ public:
                         ? std::string()
                         : import_identity(source, origin_, options, plan.stored ? "stored chunks" : "all voxels")),
           folder_(project, options.overwrites),
+          unfinished_(std::in_place, remains_in_words(folder_.path(), options)),
           threads_(import_threads(options.threads)),
           pool_(
               threads_, [this] { poll(); }, [this] { stop_where_asked(); })
@@ -249,6 +266,7 @@ private:
         report_.bytes = chunks_->bytes() + other_bytes_;
         if (options_.label_image) expect_no_foreign_content(origin_);  // checks again, after a long export
         folder_.finish();
+        unfinished_.reset();
         report_.project = folder_.path();
     }
 
@@ -289,6 +307,7 @@ private:
     VolumeInfo info_;
     std::string identity_;
     PartFolder folder_;  ///< declared last, so that no folder is made if constructing another member fails
+    std::optional<UnfinishedWork> unfinished_;
     int threads_;
     ImportReport report_;
 

@@ -1,6 +1,8 @@
 // A disk that does not answer, as a network that is gone: loaded before the C library (LD_PRELOAD), it holds every call
 // about a path with "/hung/" in it, or that ends in "/hung", until the file SHVR_HUNG_UNTIL is there. Such calls of the
 // main thread are counted in the file SHVR_HUNG_LOG, one line each, and are not held, so that a test that fails ends.
+// SHVR_HUNG_PATH: only paths with that text in them. SHVR_HUNG_REMOVALS: only fsync and unlink are held, and unlink in
+// the main thread as well, where only signal handlers call it.
 
 #include <cstdarg>
 #include <cstdio>
@@ -30,6 +32,7 @@ bool is_there(const char* path)
 bool is_hung(const char* path)
 {
     if (!path) return false;
+    if (const char* const only = std::getenv("SHVR_HUNG_PATH")) return std::strstr(path, only);
     const size_t length = std::strlen(path);
     return std::strstr(path, "/hung/") || (length >= 5 && std::strcmp(path + length - 5, "/hung") == 0);
 }
@@ -38,7 +41,10 @@ void meet(const char* path, const char* call)
 {
     if (!is_hung(path)) return;
     const char* const until = std::getenv("SHVR_HUNG_UNTIL");
-    if (syscall(SYS_gettid) == getpid()) {
+    const bool has_removals = std::getenv("SHVR_HUNG_REMOVALS"), is_removal = std::strcmp(call, "unlink") == 0;
+    if (has_removals && !is_removal && std::strcmp(call, "fsync") != 0) return;
+    const bool is_held = has_removals && is_removal;
+    if (syscall(SYS_gettid) == getpid() && !is_held) {
         const char* const log = std::getenv("SHVR_HUNG_LOG");
         const long file = log ? syscall(SYS_openat, AT_FDCWD, log, O_WRONLY | O_CREAT | O_APPEND, 0600) : -1;
         if (file < 0) return;
@@ -71,6 +77,24 @@ int access(const char* path, int mode)
 {
     meet(path, "access");
     return next<int(const char*, int)>("access")(path, mode);
+}
+
+int unlink(const char* path)
+{
+    meet(path, "unlink");
+    return next<int(const char*)>("unlink")(path);
+}
+
+int fsync(int file)
+{
+    char link[64], path[4096];
+    std::snprintf(link, sizeof link, "/proc/self/fd/%d", file);
+    const ssize_t length = readlink(link, path, sizeof path - 1);
+    if (length > 0) {
+        path[length] = '\0';
+        meet(path, "fsync");
+    }
+    return next<int(int)>("fsync")(file);
 }
 
 DIR* opendir(const char* path)

@@ -263,6 +263,19 @@ class Seen(Window):
             self.do(step, button, pause_s=0)
             self.until(lambda: self.program.poll() is not None or self.frame()["frame"] > before, "a frame")
 
+    def type_into(self, field, text, window="Export annotation"):
+        """Into the field beside that word, which begins right of it, in place of what it holds."""
+        x0, y0, x1, y1 = self.see_at_rest(field, window)["box"]
+        others = [seen["box"] for seen in self.seen(window=window)]
+        left = min(box[0] for box in others if box[0] > x1 and box[1] < y1 and box[3] > y0)
+        self.do("mousemove", round(left) + 20, round((y0 + y1) / 2), "sleep", 0.1, "mousedown", 1, "sleep", 0.1,
+                "mouseup", 1, pause_s=0.2)
+        self.press("Ctrl+A")
+        if str(text):
+            self.do("type", "--delay", 40, text, pause_s=0)
+        else:
+            self.press("BackSpace")
+
     def window_named(self, title):
         """The window's number, for xdotool. A search ends without an answer where another window goes away meanwhile."""
         return self.until(lambda: self.display.do("search", "--name", title), f"window named {title}").split()[-1]

@@ -70,19 +70,6 @@ class Export(Seen):
         self.finish()
         self.assertTrue((self.folder / "project").is_dir())
 
-    def type_into(self, field, text, window="Export annotation"):
-        """Into the field beside that word, which begins right of it, in place of what it holds."""
-        x0, y0, x1, y1 = self.see_at_rest(field, window)["box"]
-        others = [seen["box"] for seen in self.seen(window=window)]
-        left = min(box[0] for box in others if box[0] > x1 and box[1] < y1 and box[3] > y0)
-        self.do("mousemove", round(left) + 20, round((y0 + y1) / 2), "sleep", 0.1, "mousedown", 1, "sleep", 0.1,
-                "mouseup", 1, pause_s=0.2)
-        self.press("Ctrl+A")
-        if str(text):
-            self.do("type", "--delay", 40, text, pause_s=0)
-        else:
-            self.press("BackSpace")
-
 
 if __name__ == "__main__":
     unittest.main()

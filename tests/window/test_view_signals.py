@@ -1,5 +1,5 @@
-"""SIGTERM and Ctrl-C end the window in every state, also while a disk, a device or a peer never answers. Nothing that
-was done is lost: what was not saved is in the journal."""
+"""SIGTERM, SIGHUP and Ctrl-C end the window in every state, also while a disk, a device or a peer never answers. Nothing
+that was done is lost: what was not saved is in the journal, and an import goes on from the folder that is named."""
 import base64
 import hashlib
 import json
@@ -11,6 +11,7 @@ import unittest
 
 from harness import run
 from seen import Seen
+from test_import import content_of
 from window import PATIENCE_S
 
 
@@ -71,10 +72,11 @@ class Signals(Seen):
         self.program.send_signal(number)
         output, errors = self.program.communicate(timeout=PATIENCE_S)
         name = "Ctrl-C" if number == signal.SIGINT else number.name
+        self.assertIn(f"shvr: stopped by {name}", errors)
         if is_cut_off or self.program.returncode != 0:   # on a busy machine it may be cut off elsewhere, too
             self.assertEqual(self.program.returncode, -number, errors)
             self.assertIn(f"shvr: stopped by {name} before everything had ended; no file is left half written", errors)
-        return output
+        return output, errors
 
     def hung(self):
         """A session whose annotation is on a disk that answers until `answers` is removed."""
@@ -142,6 +144,58 @@ class Signals(Seen):
         self.end_by(signal.SIGINT, is_cut_off=True)
         self.assertEqual(list((self.folder / "hung").iterdir()), [])
         self.assertGreater(self.voxels(session), 50)
+
+    def begin_import(self, hung_path, **environment):
+        """Starts an import on a disk that does not answer about those paths until `answers` is there."""
+        self.scan, self.project = self.folder / "scan.nrrd", self.folder / "hung" / "project"
+        self.part = self.project.with_name("project.part")
+        self.project.parent.mkdir(exist_ok=True)
+        self.scan.write_bytes(b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 80 70 66\nencoding: raw\n\n" +
+                              bytes(number * 7 % 251 for number in range(80 * 70)) * 66)
+        self.answers = self.folder / "answers"
+        self.answers.unlink(missing_ok=True)
+        self.view(preferences={"hints_seen": 3}, environment={
+            **self.hung_disk(self.answers, self.folder / "hung.log"), "SHVR_HUNG_PATH": hung_path, **environment})
+        self.see("Open the example")
+        self.click_on("File", "##MainMenuBar")
+        self.click_on("Import as project...", "##Menu_00")
+        self.type_into("Volume", self.scan, "Import as project")
+        self.type_into("Project", self.project, "Import as project")
+        self.click_on("Import", "Import as project")
+
+    def check_goes_on(self, errors):
+        """The message names the folder, and the same import goes on from there to what it makes elsewhere."""
+        self.assertIn(str(self.part), errors)
+        self.assertIn("goes on from there; rm -r removes it", errors)
+        self.assertTrue(self.part.is_dir())
+        self.check("import", self.scan, self.project)
+        other = self.folder / "other" / self.project.name
+        other.parent.mkdir()
+        self.check("import", self.scan, other)
+        self.assertEqual(content_of(self.project), content_of(other))
+
+    def test_while_an_import_hangs(self):
+        self.begin_import("/project.part/0/")
+        self.until(lambda: (self.part / "shvr" / "import.state").exists(), "begun import")
+        _, errors = self.end_by(signal.SIGHUP, is_cut_off=True)
+        self.check_goes_on(errors)
+
+    def test_while_removing_what_an_import_writes_hangs(self):
+        self.begin_import("/project.part/shvr/.shvr-", SHVR_HUNG_REMOVALS="1")
+        self.until(lambda: any(self.part.glob("shvr/.shvr-*")), "temporary file")
+        _, errors = self.end_by(signal.SIGTERM, is_cut_off=True)
+        self.assertTrue(any(self.part.glob("shvr/.shvr-*")))
+        self.check_goes_on(errors)
+        self.assertFalse(any(self.project.rglob(".shvr-*")))
+
+    def test_while_an_import_goes_on(self):
+        self.begin_import("/project.part/1/0/")
+        self.until(lambda: any(self.part.glob("0/0/*/*")), "chunk")
+        self.program.send_signal(signal.SIGINT)
+        self.answers.write_text("")   # the disk answers again, before or after the program is cut off
+        _, errors = self.program.communicate(timeout=PATIENCE_S)
+        self.assertIn(self.program.returncode, (0, -signal.SIGINT))
+        self.check_goes_on(errors)
 
     def test_while_the_device_hangs(self):
         session = self.write_ball()

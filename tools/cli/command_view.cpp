@@ -100,6 +100,11 @@ void run_view(const ViewCommandOptions& options)
     app.run();
     const ui::AppReport report = app.report();
     if (common.json) print(json_of(report));
+    if (stop.is_made()) {
+        std::string said = sentence("shvr: ", StopRequest::in_words());
+        for (const std::string& loss : report.stop_losses) said += "; " + loss;
+        print_beside_progress(said);
+    }
     if (!report.validation_messages.empty())
         fail(report.validation_messages.size(),
              " validation messages, the first: ", report.validation_messages.front());

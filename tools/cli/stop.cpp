@@ -9,6 +9,7 @@
 #include <ctime>
 
 #include "engine/base/atomic_writer.h"
+#include "engine/base/waits/unfinished_work.h"
 #include "engine/base/waits/waits.h"
 #include "tools/cli/stop_deadline.h"
 
@@ -16,7 +17,7 @@ namespace shvr::cli {
 
 namespace {
 
-std::atomic<bool> command_listens = false, is_requested = false;
+std::atomic<bool> command_listens = false, is_requested = false, is_ending = false;
 std::atomic<int> first_signal = 0;
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 
@@ -37,6 +38,21 @@ void say(const char* text)
 {
     pollfd standard_error{.fd = STDERR_FILENO, .events = POLLOUT, .revents = 0};
     if (::poll(&standard_error, 1, 0) == 1) static_cast<void>(::write(STDERR_FILENO, text, std::strlen(text)) > 0);
+}
+
+const char* name_of(int signal_number)
+{
+    return signal_number == SIGINT ? "Ctrl-C" : signal_number == SIGTERM ? "SIGTERM" : "SIGHUP";
+}
+
+/// Ends the sentence with what remains on the disk all the same, as a folder from which an import goes on.
+void say_what_is_left()
+{
+    name_unfinished_work([](const char* words) {
+        say("; ");
+        say(words);
+    });
+    say("\n");
 }
 
 /// Ends the process by the signal itself, so that the parent process sees the signal, and a shell's loop ends, too.
@@ -61,23 +77,28 @@ extern "C" void stop(int signal_number)
     }
     remove_temporary_files();
     // After SIGPIPE nothing is printed: the reader of the output is gone, and standard error may be the same pipe.
-    if (signal_number != SIGPIPE)
-        say(signal_number == SIGINT    ? "shvr: stopped by Ctrl-C; no file is left half written\n"
-            : signal_number == SIGTERM ? "shvr: stopped by SIGTERM; no file is left half written\n"
-                                       : "shvr: stopped by SIGHUP; no file is left half written\n");
+    if (signal_number != SIGPIPE) {
+        say("shvr: stopped by ");
+        say(name_of(signal_number));
+        say("; no file is left half written");
+        say_what_is_left();
+    }
     end_by(signal_number);
 }
 
-/// Calls only async-signal-safe functions.
+/// Calls only async-signal-safe functions. Where removing files hangs, too, as on a network disk that is gone, the
+/// timer ends the process in another thread.
 extern "C" void end_overdue(int)
 {
-    remove_temporary_files();
+    constexpr itimerspec AGAIN{.it_interval = {}, .it_value = {.tv_sec = 0, .tv_nsec = 200'000'000}};
     const int signal_number = first_signal;
-    say(signal_number == SIGINT    ? "shvr: stopped by Ctrl-C"
-        : signal_number == SIGTERM ? "shvr: stopped by SIGTERM"
-                                   : "shvr: stopped by SIGHUP");
-    say(" before everything had ended; no file is left half written, and the next opening continues from the "
-        "journal\n");
+    if (is_ending.exchange(true)) return end_by(signal_number);
+    say("shvr: stopped by ");
+    say(name_of(signal_number));
+    say(" before everything had ended; no file is left half written, and the next opening continues from the journal");
+    say_what_is_left();
+    ::timer_settime(overdue_timer, 0, &AGAIN, nullptr);
+    remove_temporary_files();
     end_by(signal_number);
 }
 

@@ -2,7 +2,8 @@
 // Ctrl-C, SIGTERM and SIGHUP (the terminal was closed) end every command with a message. SIGPIPE (the reader of the
 // output is gone) ends it at once, without a message. No file is left half written. During long work (long_work.h), a
 // command ends at the work's next step, with exit status 1; otherwise it ends at once, by the signal. Nothing is lost
-// either way, since files appear completely or not at all.
+// either way, since files appear completely or not at all. The message names the folder from which an import
+// can be continued.
 
 #include <atomic>
 
