@@ -5,10 +5,17 @@ import subprocess
 import unittest
 from pathlib import Path
 
-from harness import ENVIRONMENT, SHVR, run
+from harness import ENVIRONMENT, IS_SLOW, SHVR, Volume, run
 from seen import Seen
 from window import PATIENCE_S
 
+# Runs in an interpreter that has python3-zarr: voxels of each group in the labels of a project.
+ZARR = """
+import json, sys
+import numpy, zarr
+voxels = zarr.open_group(sys.argv[1], "r")["labels/paint/0"][:]
+print(json.dumps({str(group): int((voxels == group).sum()) for group in numpy.unique(voxels[voxels > 0])}))
+"""
 NO_LOCKS = Path(SHVR).resolve().parent / "stubs" / "libno_locks.so"
 DAB = {"op": "paint", "brush": "fill", "region": "ball", "path": [[32, 32, 32]], "radius": 5, "threshold": 0, "group": 3}
 
@@ -225,6 +232,39 @@ class Writers(Seen):
         self.assertIn("session.json: was written by another program since it was opened; it is kept as", said)
         self.assertEqual((self.folder / "session.json.old").read_text(), '{"what": "another program wrote"}')
         self.assertEqual(json.loads(session.read_text())["probe"]["group"], 7)
+
+    # Kind (annotation files): the window and a script in turns on one project, whose labels python3-zarr reads in between
+    def test_a_project_s_labels_are_saved_by_the_window_and_a_script_in_turns(self):
+        if subprocess.run(["/usr/bin/python3", "-c", "import zarr"], capture_output=True).returncode:
+            self.skipTest("/usr/bin/python3 has no python3-zarr")
+        project, session = self.folder / "project", self.folder / "project" / "shvr" / "session.json"
+        self.check("import", Volume.noise((48, 40, 36), seed=4).write(self.folder), project)
+        session.write_text(json.dumps({
+            **json.loads(session.read_text()), "camera": "front",
+            "probe": {"radius_voxels": 4, "group": 3, "paint_threshold": 0}, "transfer_function": {"points": [
+                {"intensity": 0, "color": "#c0a080", "opacity": 0.5}, {"intensity": 255, "opacity": 0.9}]}}))
+        script = self.write_script("script.jsonl", [{**DAB, "path": [[9, 9, 9]], "group": 7, "region": "box"}, {"op": "save"}])
+
+        def by_zarr():
+            found = subprocess.run(["/usr/bin/python3", "-c", ZARR, project], capture_output=True, text=True)
+            self.assertEqual(found.returncode, 0, found.stderr)
+            self.assertEqual(json.loads(found.stdout), self.check_json("export", project)["voxels_by_group"])
+            return json.loads(found.stdout)
+        before = {}
+        for turn in range(2 if IS_SLOW else 1):
+            self.open_project(project)
+            self.check_stroke(self.middle(), (self.middle()[0] + 20 * turn, self.middle()[1] + 15 * turn))
+            said = self.check_refused("annotate", project, "--script", script)
+            self.assertIn(f"process {self.program.pid} on ", said)
+            self.saved(session)
+            painted = by_zarr()
+            self.assertGreater(painted["3"], before.get("3", 0))
+            self.assertEqual(painted.get("7"), before.get("7"))
+            self.assertEqual(self.finish()["voxels_in_group"], painted)
+            self.check("annotate", project, "--script", script)
+            after = by_zarr()
+            self.assertEqual(after, {**painted, "7": 1000})
+            before = after
 
     def test_a_signal_closes_the_window_as_its_button_does(self):
         session = self.write_ball()
