@@ -170,13 +170,26 @@ file(GLOB_RECURSE durability_tests CONFIGURE_DEPENDS tests/durability/*.cpp)
 shvr_test_program(durability shvr_durability_tests 300 ${durability_tests})
 target_link_libraries(shvr_durability_tests PRIVATE shvr_test_support)
 # Calls that change files go through tests/durability/watched_calls.cpp.
-foreach(call open write pwrite fsync fdatasync syncfs ftruncate rename renameat2 link mkdir unlink)
-    target_link_options(shvr_durability_tests PRIVATE -Wl,--wrap=${call})
-endforeach()
+set(watched_calls open write pwrite fsync fdatasync syncfs ftruncate rename renameat2 link mkdir unlink)
+list(TRANSFORM watched_calls PREPEND -Wl,--wrap=)
+target_link_options(shvr_durability_tests PRIVATE ${watched_calls})
 # Locks that fail, and other names of this computer.
 add_dependencies(shvr_durability_tests shvr_no_locks)
 set_property(TEST durability/two_writers durability/interleaved_writers APPEND PROPERTY ENVIRONMENT
     LD_PRELOAD=$<TARGET_FILE:shvr_no_locks> ASAN_OPTIONS=verify_asan_link_order=0)
+if(SHVR_IS_CHECKED)
+    # The same under AddressSanitizer and UndefinedBehaviorSanitizer:  cmake --build build/dev --target check_durability
+    shvr_tests_together(shvr_checked_durability_tests ${durability_tests})
+    add_executable(shvr_checked_durability_tests EXCLUDE_FROM_ALL ${together} tests/support/doctest_main.cpp
+        tests/support/random_annotation.cpp)
+    target_link_libraries(shvr_checked_durability_tests PRIVATE doctest::doctest shvr_checked)
+    target_link_options(shvr_checked_durability_tests PRIVATE ${watched_calls})
+    set_target_properties(shvr_checked_durability_tests PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+    add_custom_target(check_durability DEPENDS shvr_checked_durability_tests shvr_no_locks USES_TERMINAL
+        WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}
+        COMMAND ${CMAKE_COMMAND} -E env LD_PRELOAD=$<TARGET_FILE:shvr_no_locks> ASAN_OPTIONS=verify_asan_link_order=0
+            $<TARGET_FILE:shvr_checked_durability_tests>)
+endif()
 
 # hidapi and a real kernel, in a virtual machine: tests/vm/README.md.
 add_executable(shvr_vm_test EXCLUDE_FROM_ALL tests/vm/hid_kernel.cpp tests/vm/uhid_device.cpp)
