@@ -122,7 +122,7 @@ MAY_INCLUDE = {
     "tools": "engine/base engine/remote engine/pages engine/volume engine/graph engine/gpu engine/projects engine/annotation/script engine/annotation/trace "
     "engine/annotation/work engine/annotation/writers engine/session engine/jobs engine/tasks engine/movie engine/picture engine/live "
     "haptics haptics/devices haptics/hid ui engine/study engine/study/report engine/workbench "
-    "engine/workbench/touch "
+    "engine/workbench/touch engine/workbench/lists engine/workbench/sight "
     "tools/golden tools/bench tools/report",
 }
 # Rooms that must work without a device: none may include a room that depends on one, directly or indirectly.

@@ -7,6 +7,7 @@
 #include "engine/picture/picture_file.h"
 #include "engine/session/picture_session.h"
 #include "tools/cli/cli.h"
+#include "tools/cli/figure/figure_options.h"
 #include "tools/cli/movie/render_movie.h"
 
 namespace shvr::cli {
@@ -18,6 +19,7 @@ struct RenderCommandOptions {
     std::string input, output, size, camera, transfer_function;
     bool with_session = false;
     MovieOptions movie;
+    FigureOptions figure;
 };
 
 /// Why a picture is incomplete.
@@ -77,10 +79,11 @@ void run_render(RenderCommandOptions options)
     if (options.output.empty() == options.movie.path.empty())
         throw UsageError(options.output.empty() ? "--output is missing; expected -o for a picture, or --movie"
                                                 : "--output and --movie are given; expected one of them");
+    check_figure(options.figure);
     if (!options.movie.path.empty()) {
         take_shorthands(options);
         return render_movie(
-            {options.common, options.input, options.camera, options.with_session, std::move(options.movie)});
+            {options.common, options.input, options.camera, options.with_session, options.figure, options.movie});
     }
     check_output("--output", options.output, {".png", ".pfm"});
     options.output = written_path(options.output).string();
@@ -97,6 +100,7 @@ void run_render(RenderCommandOptions options)
     const std::optional<ProbeLook> probe = shown_probe(opened.session, *opened.renderer, *opened.annotator);
     const Progress progress = work.begin("drawing " + options.output);
     const PictureProbe kept_probe = outlines_probe(options.input) ? PictureProbe::as_rendered : PictureProbe::plain;
+    std::vector<std::string> left_out;
     PictureFile file(options.output, *opened.renderer, opened.session, camera,
                      {.probe = probe,
                       .outlines_probe = outlines_probe(options.input),
@@ -104,12 +108,14 @@ void run_render(RenderCommandOptions options)
                       .progress = progress},
                      options.with_session
                          ? texts_of_picture(opened.session, camera, options.output, opened.project, kept_probe)
-                         : PictureTexts());
+                         : PictureTexts(),
+                     figure_over(options.figure, opened, opened.session, camera, left_out));
     const Picture picture = draw(file, opened, options, work);
     check_validation(opened);
     warn_of_gaps(opened, options.input, options.common);
-    warn(picture.warnings, options.common);
-    for (const std::string& warning : picture.warnings) opened.warnings.push_back(warning);
+    left_out.insert(left_out.begin(), picture.warnings.begin(), picture.warnings.end());
+    warn(left_out, options.common);
+    for (const std::string& warning : left_out) opened.warnings.push_back(warning);
     if (!options.common.json) return say(options.common, options.output);
 
     Json passes = Json::array();
@@ -148,6 +154,7 @@ void add_render(CLI::App& program)
         "Transfer function: a preset (bundles, haze, heat, layers, surface), or a JSON file with its points");
     command->add_flag("--with-session", options->with_session,
                       "Keep the session in the .png, so that it can be rendered again, as the window's pictures do");
+    add_figure_options(*command, options->figure);
     add_movie_options(*command, options->movie);
     add_incomplete_option(*command, options->common,
                           "Write a picture that lacks something, with a warning, instead of failing");
@@ -159,11 +166,16 @@ void add_render(CLI::App& program)
         "not\n"
         "show; --set render.detail=0 draws all voxels, as a resident volume always is. Either picture is complete:\n"
         "\"detail\" in --json tells which it is.\n\n"
+        "--scale-bar, --color-bar, --legend, --axes, --title and --text are drawn in black or white, whichever stands "
+        "out\n"
+        "from the background; black on a transparent one. In perspective the scale bar holds in the plane that its\n"
+        "label names. Elements that do not fit are left out, with a warning.\n\n"
         "A movie goes from view to view of --keys, slowing down at each: the camera turns the shortest way, and\n"
         "transfer function, groups, light and cuts change along. --turntable turns at constant speed about the\n"
         "axis of the volume that points upwards, with --keys in addition. Each run makes the same frames. A .webm or\n"
         ".mp4 has an opaque background.\n\n"
         "Example:\n  shvr render scan.nhdr -o scan.png --size 800x600 --camera front\n"
+        "  shvr render project/ -o figure.png --scale-bar --legend --title 'Bellis' --text 40,52.5,7:stem\n"
         "  shvr render project/ --movie turn.webm --turntable 360 --frames 240\n"
         "  shvr render project/ --movie frames/ --keys 'front,{\"camera\":\"top\",\"cut\":{\"upper\":[99,99,50]}}'");
     command->callback([options] { run_render(*options); });

@@ -39,38 +39,41 @@ GlyphSet known_glyphs;
 bool is_atlas_stale = false;
 std::vector<ImWchar> glyph_ranges;  // the atlas keeps a pointer to them
 
-void fill_ranges()
+std::vector<ImWchar> ranges_of(const GlyphSet& glyphs)
 {
-    glyph_ranges.clear();
-    for (const auto& [first, last] : known_glyphs.ranges()) glyph_ranges.insert(glyph_ranges.end(), {first, last});
-    glyph_ranges.push_back(0);
+    std::vector<ImWchar> ranges;
+    for (const auto& [first, last] : glyphs.ranges()) ranges.insert(ranges.end(), {first, last});
+    ranges.push_back(0);
+    return ranges;
 }
 
 enum class For { screen, picture };
 
-bool add_font(ImFontAtlas& atlas, const char* path, float pixels, bool is_merged, For purpose)
+bool add_font(ImFontAtlas& atlas, const char* path, float pixels, bool is_merged, For purpose,
+              const std::vector<ImWchar>& ranges)
 {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) return false;
     ImFontConfig config;
     config.MergeMode = is_merged;
     if (is_merged || purpose == For::picture) config.OversampleH = 1;  // an atlas pixel is a picture pixel
-    return atlas.AddFontFromFileTTF(path, pixels, &config, glyph_ranges.data()) != nullptr;
+    return atlas.AddFontFromFileTTF(path, pixels, &config, ranges.data()) != nullptr;
 }
 
-void fill(ImFontAtlas& atlas, double pixels, For purpose)
+/// `ranges`: those of `glyphs`; must outlive the atlas.
+void fill(ImFontAtlas& atlas, double pixels, For purpose, const GlyphSet& glyphs, const std::vector<ImWchar>& ranges)
 {
     const float size = float(std::max(1.0, std::round(pixels)));
-    const bool is_found =
-        std::ranges::any_of(FONTS, [&](const char* path) { return add_font(atlas, path, size, false, purpose); });
+    const bool is_found = std::ranges::any_of(
+        FONTS, [&](const char* path) { return add_font(atlas, path, size, false, purpose, ranges); });
     if (!is_found) {
         ImFontConfig config;
         config.SizePixels = size;
         config.OversampleH = 1;
         atlas.AddFontDefault(&config);
     }
-    if (known_glyphs.has_rare())
-        for (const char* path : FALLBACKS) add_font(atlas, path, size, true, purpose);
+    if (glyphs.has_rare())
+        for (const char* path : FALLBACKS) add_font(atlas, path, size, true, purpose, ranges);
 }
 
 /// Returns the next character of a UTF-8 text and its length in bytes. An invalid byte counts as one character.
@@ -126,15 +129,18 @@ void load_fonts(double pixels)
 {
     ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
     atlas.Clear();
-    fill_ranges();
-    fill(atlas, pixels, For::screen);
+    glyph_ranges = ranges_of(known_glyphs);
+    fill(atlas, pixels, For::screen, known_glyphs, glyph_ranges);
     is_atlas_stale = false;
 }
 
 std::vector<TextImage> draw_texts(std::span<const std::string> texts, double pixels)
 {
+    GlyphSet glyphs = known_glyphs;
+    for (const std::string& text : texts) glyphs.add(text);
+    const std::vector<ImWchar> ranges = ranges_of(glyphs);
     ImFontAtlas atlas;
-    fill(atlas, pixels, For::picture);
+    fill(atlas, pixels, For::picture, glyphs, ranges);
     uint8_t* coverage = nullptr;
     glm::ivec2 size(0);
     atlas.GetTexDataAsAlpha8(&coverage, &size.x, &size.y);

@@ -150,7 +150,8 @@ void Drawing::draw_files()
         PictureFile file(path, *opened_.renderer, frame.session, frame.camera, options_of(frame, index),
                          request_.with_session
                              ? texts_of_picture(frame.session, frame.camera, path, opened_.project, kept_probe)
-                             : PictureTexts());
+                             : PictureTexts(),
+                         figure_over(request_.figure, opened_, frame.session, frame.camera, warnings_));
         draw_parts(file, &PictureFile::is_drawn, index);
         file.commit();
         finished_ = index + 1;
@@ -162,8 +163,13 @@ void Drawing::draw_movie()
     MovieEncoder encoder(plan_.path, opened_.session.render.size, plan_.frames_per_second);
     for (int index = 0; index < movie_.frames(); ++index) {
         const Movie::Frame frame = movie_.frame(index);
-        PictureJob job(*opened_.renderer, frame.session, frame.camera, options_of(frame, index),
-                       [&](const ImageF& rows) { encoder.add(rows); });
+        const PictureFile::Over over = figure_over(request_.figure, opened_, frame.session, frame.camera, warnings_);
+        uint32_t first_row = 0;
+        PictureJob job(*opened_.renderer, frame.session, frame.camera, options_of(frame, index), [&](ImageF rows) {
+            if (over) over(rows, first_row);
+            first_row += uint32_t(rows.height);
+            encoder.add(rows);
+        });
         draw_parts(job, &PictureJob::is_done, index);
         finished_ = index + 1;
     }

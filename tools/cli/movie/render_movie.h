@@ -5,6 +5,7 @@
 #include <string>
 
 #include "tools/cli/cli.h"
+#include "tools/cli/figure/figure_options.h"
 
 namespace shvr::cli {
 
@@ -17,11 +18,12 @@ struct MovieOptions {
 };
 void add_movie_options(CLI::App& command, MovieOptions& options);
 
-/// `camera`, `with_session`: as for a picture. `common.settings` contains the size and the transfer function.
+/// `camera`, `with_session`, `figure`: as for a picture. `common.settings` contains the size and the transfer function.
 struct MovieRequest {
     Common common;
     std::string input, camera;
     bool with_session = false;
+    FigureOptions figure;
     MovieOptions movie;
 };
 void render_movie(const MovieRequest& request);

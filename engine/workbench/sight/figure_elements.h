@@ -1,0 +1,48 @@
+#pragma once
+// Elements that publications need over a picture: scale bar, colour bar, legend of the groups, title, texts at points
+// and the directions of the axes. Drawn without boxes, in black or white, whichever stands out from the background,
+// with a thin rim in the other. Pure; any thread, except for the drawer of texts.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/session/session.h"
+#include "engine/workbench/sight/figure.h"
+
+namespace shvr::ui {
+
+/// A text at a point of the volume, and a dot there.
+struct FigureText {
+    glm::dvec3 voxel{0.0};
+    std::string text;
+};
+
+struct FigureElements {
+    bool scale_bar = false;  ///< in each view and slice: a line of a rounded length. In perspective its label names the
+                             ///< plane in which it holds
+    bool color_bar = false;  ///< colours of the transfer function, as opaque as it is relative to its maximum
+    bool legend = false;     ///< colours and names of the groups that are drawn
+    bool axes = false;       ///< directions of x, y and z
+    std::string title;
+    std::vector<FigureText> texts;
+    double text_pixels = 0.0;  ///< height of a line of text; 0: automatic_text_pixels()
+    bool is_empty() const { return !scale_bar && !color_bar && !legend && !axes && title.empty() && texts.empty(); }
+};
+
+/// Returns 1/28 of the picture's shorter side, at least 10.
+double automatic_text_pixels(const glm::uvec2& size);
+
+/// The inputs of a figure. `groups`: the groups that are drawn (drawn_groups).
+struct FigureScene {
+    const Session& session;
+    const VolumeInfo& volume;
+    std::span<const Pane> panes;
+    std::span<const uint8_t> groups;
+};
+/// Title, legend, colour bar, texts and axes are drawn in the first pane. `left_out`: receives a sentence for each
+/// element that cannot be drawn, with the reason.
+Figure figure_of(const FigureElements& elements, const FigureScene& scene, const TextDrawer& draw_texts,
+                 std::vector<std::string>& left_out);
+
+}  // namespace shvr::ui

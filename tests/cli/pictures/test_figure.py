@@ -1,0 +1,143 @@
+"""shvr render --scale-bar, --color-bar, --legend, --axes, --title, --text: what publications need beside a picture."""
+import struct
+import unittest
+
+from harness import CliTest
+
+SIDE = 96
+EDGE = 8  # 0.8 lines of text, which are 10 pixels high
+# One pixel is a quarter of a voxel.
+FLAT = '{"projection":"orthographic","eye":[12,-60,12],"target":[12,12,12],"height":24}'
+BLACK, WHITE = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)
+
+
+def read_pfm(path):
+    """Rows from the top, each a list of colours in linear light."""
+    kind, size, scale, rest = path.read_bytes().split(b"\n", 3)
+    width, height = map(int, size.split())
+    assert kind == b"PF" and float(scale) < 0
+    values = struct.unpack(f"<{3 * width * height}f", rest)
+    colors = list(zip(values[0::3], values[1::3], values[2::3]))
+    return [colors[width * row:width * (row + 1)] for row in reversed(range(height))]
+
+
+def changed(before, after):
+    """The box of the pixels that differ: (left, top, right, bottom), half-open."""
+    places = [(x, y) for y, row in enumerate(before) for x, color in enumerate(row) if color != after[y][x]]
+    if not places:
+        return None
+    return (min(x for x, _ in places), min(y for _, y in places),
+            max(x for x, _ in places) + 1, max(y for _, y in places) + 1)
+
+
+class Figure(CliTest):
+    def setUp(self):
+        super().setUp()
+        # Nothing of the volume is visible, so that each pixel is the background or an element.
+        self.session = self.write_session(render={"size": [SIDE, SIDE]}, transfer_function={"points": [
+            {"intensity": 0, "color": "#ff0000", "opacity": 0}, {"intensity": 100, "color": "#0000ff", "opacity": 0}]})
+
+    def picture(self, *arguments, camera=FLAT, warnings=()):
+        path = self.folder / "a.pfm"
+        result = self.check_json("render", self.session, "-o", path, "--camera", camera, *arguments)
+        self.assertEqual(len(result["warnings"]), len(warnings), result["warnings"])
+        for warning, words in zip(result["warnings"], warnings):
+            self.assertIn(words, warning)
+        return read_pfm(path)
+
+    def test_a_scale_bar_is_as_long_as_it_says(self):
+        rows = self.picture("--scale-bar")
+        # At most 0.3 of the width, 7.2 voxels: 5 voxels are 20 pixels, which end at the edge.
+        expected = [SIDE - EDGE - 20 <= x < SIDE - EDGE for x in range(SIDE)]
+        for y in (SIDE - EDGE - 2, SIDE - EDGE - 1):
+            self.assertEqual([color == BLACK for color in rows[y]], expected)
+        self.assertTrue(all(color == WHITE for y in range(SIDE - EDGE, SIDE) for color in rows[y]))
+        self.assertTrue(any(color != WHITE for y in range(SIDE - EDGE - 14, SIDE - EDGE - 3) for color in rows[y]))
+        # The words of a perspective, which name the plane, are longer.
+        blank = self.picture()
+        wide = changed(blank, self.picture("--scale-bar", camera="front"))
+        self.assertLess(wide[0], changed(blank, rows)[0])
+
+    def test_each_element_is_where_it_belongs(self):
+        blank = self.picture()
+        self.assertTrue(all(color == WHITE for row in blank for color in row))
+        left, top, right, bottom = changed(blank, self.picture("--title", "Bellis"))
+        self.assertLess(bottom, 20)
+        self.assertAlmostEqual(left + right, SIDE, delta=4)
+        left, top, right, bottom = changed(blank, self.picture("--axes"))
+        # x goes to the right and z upwards, from 40 pixels right of and above the corner; y goes away from the eye.
+        for found, expected in zip((left, bottom), (40, SIDE - 40)):
+            self.assertAlmostEqual(found, expected, delta=4)
+        self.assertTrue(60 < right < 80 and 16 < top < SIDE - 60, (left, top, right, bottom))
+        # The dot is at the voxel, the text to its right in the left half, and to its left in the right half.
+        left, top, right, bottom = changed(blank, self.picture("--text", "6,12,18:stem"))
+        self.assertTrue(21 <= left <= 23 and top < 24 < bottom and right > 35, (left, top, right, bottom))
+        left, top, right, bottom = changed(blank, self.picture("--text", "18,12,18:stem"))
+        self.assertTrue(73 <= right <= 75 and left < 60, (left, top, right, bottom))
+        both = changed(blank, self.picture("--text", "18,12,18:stem", "--text", "6,12,18:stem: left"))
+        self.assertEqual(both[2], right)
+        self.assertTrue(21 <= both[0] <= 23)
+
+    def test_a_legend_has_the_colours_of_the_groups_that_are_drawn(self):
+        self.check("annotate", self.session, "--script", self.write_script("s.jsonl", [
+            {"op": "paint", "brush": "fill", "group": 3, "threshold": 0, "radius": 2, "path": [[12, 12, 12]]},
+            {"op": "paint", "brush": "fill", "group": 5, "threshold": 0, "radius": 2, "path": [[4, 4, 4]]}, {"op": "save"}]))
+        groups = ["--set", 'groups={"3":{"name":"vein","color":"#ff0000","opacity":0.001},'
+                           '"5":{"color":"#00ff00","opacity":1,"visible":false}}']
+        with_it = self.picture("--legend", *groups)
+        box = changed(self.picture(*groups), with_it)
+        self.assertTrue(box[0] > SIDE / 2 and box[3] < SIDE / 3, box)
+        squares = [color for row in with_it for color in row if color == (1.0, 0.0, 0.0)]
+        self.assertEqual(len(squares), 64)  # 8 x 8 pixels
+        self.assertFalse(any(color == (0.0, 1.0, 0.0) for row in with_it for color in row))  # a hidden group
+
+    def test_a_colour_bar_has_the_colours_of_the_transfer_function(self):
+        function = ["--set", 'transfer_function={"points":[{"intensity":1000,"color":"#ff0000","opacity":0.5},'
+                             '{"intensity":2000,"color":"#0000ff","opacity":0.5}]}']
+        side, height = 120, 48
+        blank = self.picture("--size", f"{side}x{side}", *function)
+        rows = self.picture("--size", f"{side}x{side}", "--color-bar", *function)
+        left, top, right, bottom = changed(blank, rows)
+        self.assertTrue(left == EDGE - 1 and side / 4 < top and bottom < 3 * side / 4, (left, top, right, bottom))
+        x = EDGE + 6
+        first = (side - height) // 2
+        for row in range(height):
+            blue = 1 - (row + 0.5) / height
+            for value, expected in zip(rows[first + row][x], (1 - blue, 0, blue)):
+                self.assertAlmostEqual(value, expected, places=5)
+
+    def test_words_stand_out_from_the_background(self):
+        for background, colors in [("#ffffff", {BLACK}), ("#000000", {WHITE}), ("#ffffff00", {BLACK})]:
+            rows = self.picture("--scale-bar", "--set", f'render.background="{background}"')
+            self.assertIn(rows[SIDE - EDGE - 1][SIDE - EDGE - 5], colors, background)
+
+    def test_larger_text_has_more_pixels(self):
+        blank = self.picture()
+        small = changed(blank, self.picture("--title", "abc"))
+        large = changed(blank, self.picture("--title", "abc", "--text-pixels", 20))
+        self.assertAlmostEqual(large[3] - large[1], 2 * (small[3] - small[1]), delta=4)
+
+    def test_what_cannot_be_drawn_is_named(self):
+        self.picture("--legend", "--color-bar", "--text", "100,12,12:far", "--title", "a", warnings=[
+            "the legend is left out: no group is painted or traced, and visible",
+            "the colour bar is left out: the transfer function draws nothing",
+            'the text "far" is left out: its point is outside of the picture'])
+        self.picture("--axes", "--scale-bar", "--size", "20x20", warnings=["the scale bar is left out", "the axes are left out"])
+
+    def test_wrong_usage(self):
+        for options, says in [(["--text", "1,2:x"], '--text is "1,2:x"; expected X,Y,Z:TEXT'),
+                              (["--text", "1,2,3"], "--text is"), (["--text", "1,2,3: "], "--text is"),
+                              (["--text", "1,2,3,4:x"], "--text is"), (["--text", "1,2,nan:x"], "--text is"),
+                              (["--title", "a", "--text-pixels", "1"], "--text-pixels is 1; expected a number from 6"),
+                              (["--text-pixels", "12"], "without anything to draw")]:
+            self.check_refused("render", self.session, "-o", self.folder / "a.png", *options, says=[says], status=2)
+
+    def test_frames_of_a_movie_have_the_same_elements(self):
+        elements = ["--title", "turn", "--scale-bar", "--axes", "--size", "48x48"]
+        self.check("render", self.session, "--movie", self.folder / "m", "--frames", "2", *elements)
+        self.check("render", self.session, "-o", self.folder / "a.png", "--camera", "front", *elements)
+        self.assertEqual((self.folder / "m" / "frame-0001.png").read_bytes(), (self.folder / "a.png").read_bytes())
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,83 @@
+#include "tools/cli/figure/figure_options.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "engine/base/text.h"
+#include "engine/workbench/lists/group_list.h"
+#include "ui/picture_texts.h"
+
+namespace shvr::cli {
+
+namespace {
+
+constexpr double MIN_TEXT_PIXELS = 6.0, MAX_TEXT_PIXELS = 1000.0;
+
+/// Reads "X,Y,Z:TEXT".
+ui::FigureText parse_figure_text(const std::string& given)
+{
+    const size_t colon = given.find(':');
+    ui::FigureText result{.voxel = {}, .text = colon == given.npos ? "" : given.substr(colon + 1)};
+    std::string_view rest = std::string_view(given).substr(0, std::min(colon, given.size()));
+    bool fits = !trimmed(result.text).empty();
+    for (int axis = 0; axis < 3 && fits; ++axis) {
+        const size_t comma = std::min(rest.find(','), rest.size());
+        const std::optional<double> number = number_of(trimmed(rest.substr(0, comma)));
+        fits = number && std::isfinite(*number) && (comma < rest.size()) == (axis < 2);
+        if (fits) result.voxel[axis] = *number;
+        rest.remove_prefix(std::min(comma + 1, rest.size()));
+    }
+    if (!fits)
+        throw UsageError(
+            sentence("--text is ", in_quotes(given), "; expected X,Y,Z:TEXT in voxels, as in 12.5,40,7:stem"));
+    return result;
+}
+
+}  // namespace
+
+void add_figure_options(CLI::App& command, FigureOptions& options)
+{
+    ui::FigureElements& elements = options.elements;
+    command.add_flag("--scale-bar", elements.scale_bar, "Draw a line of a rounded length, with the length");
+    command.add_flag("--color-bar", elements.color_bar, "Draw the colours of the transfer function, with intensities");
+    command.add_flag("--legend", elements.legend, "Draw colours and names of the groups that are painted or traced");
+    command.add_flag("--axes", elements.axes, "Draw the directions of x, y and z");
+    command.add_option("--title", elements.title, "Draw a title");
+    command.add_option("--text", options.texts, "Draw a dot and a text at a voxel, as in 12.5,40,7:stem; repeatable")
+        ->allow_extra_args(false);
+    command.add_option("--text-pixels", elements.text_pixels,
+                       "Height of a line of text in these (default: 1/28 of the shorter side, at least 10)");
+}
+
+void check_figure(FigureOptions& options)
+{
+    const double pixels = options.elements.text_pixels;
+    if (pixels != 0.0 && !(pixels >= MIN_TEXT_PIXELS && pixels <= MAX_TEXT_PIXELS))
+        throw UsageError(sentence("--text-pixels is ", pixels, "; expected a number from ", MIN_TEXT_PIXELS, " to ",
+                                  MAX_TEXT_PIXELS));
+    for (const std::string& text : options.texts) options.elements.texts.push_back(parse_figure_text(text));
+    if (pixels != 0.0 && options.elements.is_empty())
+        throw UsageError(
+            "--text-pixels is given without anything to draw; expected it with --title, --scale-bar, "
+            "--color-bar, --legend, --axes or --text");
+}
+
+PictureFile::Over figure_over(const FigureOptions& options, const Opened& opened, const Session& session,
+                              const Camera& camera, std::vector<std::string>& left_out)
+{
+    if (options.elements.is_empty()) return {};
+    const VolumeInfo& volume = opened.source->info();
+    const glm::dvec3 probe_voxel = session.probe.voxel.value_or(0.5 * glm::dvec3(volume.size));
+    const std::vector<Pane> panes = panes_of(session.view, camera, session.render.size, volume, probe_voxel);
+    const Document& document = opened.annotator->document();
+    const std::vector<uint8_t> groups = ui::drawn_groups(session, document.mask.voxels_by_group(), document.trace);
+    std::vector<std::string> sentences;
+    auto figure = std::make_shared<ui::Figure>(
+        ui::figure_of(options.elements, {session, volume, panes, groups}, ui::draw_picture_texts, sentences));
+    for (const std::string& each : sentences)
+        if (std::ranges::find(left_out, each) == left_out.end()) left_out.push_back(each);
+    return [figure](ImageF& rows, uint32_t first_row) { ui::draw(*figure, rows, first_row); };
+}
+
+}  // namespace shvr::cli

@@ -1,0 +1,27 @@
+#pragma once
+// shvr render --scale-bar, --color-bar, --legend, --axes, --title, --text: what is drawn over a picture, or over each
+// frame of a movie, for publications.
+
+#include <string>
+#include <vector>
+
+#include "engine/picture/picture_file.h"
+#include "engine/workbench/sight/figure_elements.h"
+#include "tools/cli/cli.h"
+
+namespace shvr::cli {
+
+struct FigureOptions {
+    ui::FigureElements elements;
+    std::vector<std::string> texts;  ///< as given: "X,Y,Z:TEXT"
+};
+void add_figure_options(CLI::App& command, FigureOptions& options);
+/// Reads the texts into the elements. Throws UsageError for a text that is not as expected.
+void check_figure(FigureOptions& options);
+
+/// Returns what draws the elements over rows of the picture of `session` from `camera`; empty if there are none. Adds
+/// to `left_out` what it cannot draw, each sentence once.
+PictureFile::Over figure_over(const FigureOptions& options, const Opened& opened, const Session& session,
+                              const Camera& camera, std::vector<std::string>& left_out);
+
+}  // namespace shvr::cli
