@@ -45,6 +45,7 @@ MAY_INCLUDE = {
     "engine/annotation/files": "engine/base engine/volume engine/annotation engine/annotation/trace engine/formats "
     "engine/formats/export engine/formats/tiff engine/formats/zarr engine/projects shaders",
     "engine/annotation/sets": "engine/base engine/components engine/annotation",
+    "engine/annotation/meshes": "engine/base engine/annotation",
     "engine/annotation/operations": "engine/base engine/volume engine/annotation engine/annotation/trace "
     "engine/annotation/sets",
     "engine/annotation/script": "engine/base engine/annotation engine/annotation/trace engine/annotation/operations "
