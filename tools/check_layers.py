@@ -145,7 +145,7 @@ THIRD_PARTIES = {
     # the other files write JSON.
     "nlohmann/json": (
         r"nlohmann/(?!json_fwd\.hpp)",
-        r"engine/(base/json|graph/|session/|tasks/|projects/|formats/zarr/|annotation/files/).*\.cpp|tools/|tests/",
+        r"engine/(base/json|graph/|session/|tasks/|projects/|formats/(zarr|export)/|annotation/files/).*\.cpp|tools/|tests/",
     ),
     "GDCM": (r"gdcm", r"engine/formats/dicom/|tests/unit/formats/dicom/"),
     "zlib": (r"zlib\.h", r"engine/formats/|tests/"),
