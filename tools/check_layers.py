@@ -59,8 +59,8 @@ MAY_INCLUDE = {
     "engine/jobs": "engine/base",
     "engine/pages": "engine/base",
     "engine/tasks": "engine/base engine/volume engine/remote engine/look engine/components engine/formats/export engine/annotation "
-    "engine/annotation/trace engine/annotation/measures engine/annotation/patterns engine/annotation/files "
-    "engine/annotation/writers engine/projects engine/session engine/jobs",
+    "engine/annotation/trace engine/annotation/measures engine/annotation/patterns engine/annotation/meshes "
+    "engine/annotation/files engine/annotation/writers engine/projects engine/session engine/jobs",
     "engine/device": "engine/base engine/volume engine/gpu engine/passes engine/look engine/bricks engine/annotation "
     "engine/annotation/trace engine/annotation/work shaders",
     "engine/picture": "engine/base engine/volume engine/passes engine/look engine/annotation/work engine/session engine/device",

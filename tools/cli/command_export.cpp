@@ -1,7 +1,8 @@
 // shvr export: writes annotations in the formats of other programs, and their measurements. Needs no Vulkan device.
 
 #include "engine/annotation/work/work.h"
-#include "engine/tasks/export_task.h"
+#include "engine/base/text.h"
+#include "engine/tasks/surface_task.h"
 #include "engine/volume/unit.h"
 #include "tools/cli/cli.h"
 
@@ -11,9 +12,10 @@ namespace {
 
 struct ExportCommandOptions {
     Common common;
-    std::string project, mask, offset, trace, mesh, metrics;
+    std::string project, mask, offset, trace, mesh, surface, metrics;
     std::string space = "physical";
     ExportTask task{.names = OptionNames::command_line};
+    SurfaceTask surface_task{.names = OptionNames::command_line};
 };
 
 ExportTask task_of(const ExportCommandOptions& options)
@@ -28,6 +30,36 @@ ExportTask task_of(const ExportCommandOptions& options)
     return task;
 }
 
+/// Null if no surface is wanted.
+std::optional<SurfaceTask> surface_task_of(const ExportCommandOptions& options)
+{
+    if (options.surface.empty()) return std::nullopt;
+    SurfaceTask task = options.surface_task;
+    // "GROUPS:FILE", or "FILE", whose folders may hold a colon.
+    const size_t colon = options.surface.find(':');
+    const bool names_groups = colon != std::string::npos && options.surface.find('/') > colon;
+    if (names_groups) task.groups = options.surface.substr(0, colon);
+    if (names_groups && colon == 0)
+        throw UsageError(sentence("--surface is ", in_quotes(options.surface), "; expected GROUPS:FILE or FILE"));
+    task.surface = names_groups ? options.surface.substr(colon + 1) : options.surface;
+    task.space = task_of(options).space;
+    task.budget_host_mib = int64_t(options.common.budget_host_mib);
+    return task;
+}
+
+/// Fails if a surface has the name of another output.
+void check_names(const SurfaceTask& surface, const std::vector<std::filesystem::path>& files, const ExportTask& task)
+{
+    const auto plain = [](const std::filesystem::path& path) {
+        return std::filesystem::absolute(path).lexically_normal();
+    };
+    for (const std::filesystem::path& file : files)
+        for (const std::filesystem::path& other : {task.mask, task.offset, task.trace, task.mesh, task.metrics})
+            if (!other.empty() && plain(other) == plain(file))
+                throw UsageError(sentence(option_name(surface.names, "surface"), " and another option name '",
+                                          file.string(), "'; expected two names"));
+}
+
 template <class Value>
 Json by_group(const std::map<int, Value>& values, double factor)
 {
@@ -36,23 +68,28 @@ Json by_group(const std::map<int, Value>& values, double factor)
     return object;
 }
 
-Json to_json(const ExportResult& result)
+Json to_json(const ExportResult& result, const SurfaceResult& surfaces)
 {
+    std::vector<std::string> written = result.written;
+    written.insert(written.end(), surfaces.written.begin(), surfaces.written.end());
     const std::optional<double> micrometres = micrometres_in(result.unit);
-    return {{"written", result.written},
+    return {{"written", written},
             {"voxels_by_group", by_group(result.voxels_by_group, 1.0)},
             {"nodes", result.nodes},
             {"internodes", result.internodes},
             {"length_um_by_group", micrometres ? by_group(result.length_by_group, *micrometres) : Json(nullptr)},
             {"length_by_group", by_group(result.length_by_group, 1.0)},
             {"unit", result.unit},
+            {"triangles_by_group", by_group(surfaces.triangles_by_group, 1.0)},
             {"left_out", result.left_out}};
 }
 
 void run_export(const ExportCommandOptions& options)
 {
     const ExportTask task = task_of(options);
+    const std::optional<SurfaceTask> surface_task = surface_task_of(options);
     check(task);
+    if (surface_task) check(*surface_task);
     // Annotations in an archived project cannot be read, so an export would silently write empty files.
     if (const std::string archived = archived_project(options.project); !archived.empty()) fail(archived);
     LongWork long_work(options.common.quiet);
@@ -85,12 +122,21 @@ void run_export(const ExportCommandOptions& options)
                                     .volume_path = opened.session.volume_path,
                                     .trace_path = opened.session.trace_path,
                                     .mask_path = work.mask_of_header()};
+    if (surface_task) {
+        check(task, annotation);
+        check(*surface_task, annotation);
+        check_names(*surface_task, surface_files(*surface_task, annotation.mask), task);
+    }
     const ExportResult result = run(task, annotation, long_work, [&](const ExportResult& so_far) {
         // The trace is written first.
         if (so_far.written.size() == 1) warn(so_far.left_out, options.common);
         say(options.common, "wrote " + so_far.written.back());
     });
-    if (options.common.json) print(to_json(result));
+    SurfaceResult surfaces;
+    if (surface_task)
+        surfaces = run(*surface_task, annotation, long_work,
+                       [&](const SurfaceResult& so_far) { say(options.common, "wrote " + so_far.written.back()); });
+    if (options.common.json) print(to_json(result, surfaces));
 }
 
 }  // namespace
@@ -98,7 +144,8 @@ void run_export(const ExportCommandOptions& options)
 void add_export(CLI::App& program)
 {
     auto options = std::make_shared<ExportCommandOptions>();
-    CLI::App* command = program.add_subcommand("export", "Writes mask, offsets, trace and measures for other programs");
+    CLI::App* command =
+        program.add_subcommand("export", "Writes mask, offsets, trace, surfaces and measures for other programs");
     command->add_option("PROJECT", options->project, "Project folder or session (.json)")->required();
     command->add_option("--mask", options->mask, "The painted voxels (.mask, .nrrd, .tif; .zarr: OME-Zarr labels)");
     command->add_flag("--labels", options->task.labels,
@@ -109,9 +156,24 @@ void add_export(CLI::App& program)
     command->add_flag("--break-loops", options->task.break_loops,
                       "Open each loop where its last internode closed it, for .swc and .rsml, which hold trees");
     command->add_option("--mesh", options->mesh, "The trace as tubes (.obj, .ply)");
+    CLI::Option* surface = command->add_option(
+        "--surface", options->surface,
+        "[GROUPS:]FILE, such as 3:stem.stl or 1+4:parts.glb: closed surfaces of these groups, or of all that are "
+        "painted (.stl: a file for each group, unless one is named; .ply, .obj, .glb: one for all)");
+    command
+        ->add_option("--smooth", options->surface_task.smooth,
+                     "Steps that smooth surfaces: no vertex moves by half a voxel, and each group keeps its volume "
+                     "within 1 %; 0: the faces of voxels")
+        ->type_name("STEPS")
+        ->capture_default_str()
+        ->check(CLI::Range(0, MAX_SURFACE_STEPS))
+        ->needs(surface);
+    add_host_budget_option(*command, options->common,
+                           "Host memory that surfaces may take; unless given, three quarters of the machine's");
     command
         ->add_option("--space", options->space,
-                     "Of trace and mesh: physical, where other programs show the volume, with the origin at the centre "
+                     "Of trace, mesh and surfaces: physical, where other programs show the volume, with the origin at "
+                     "the centre "
                      "of voxel 0 unless the file states another place; or volume, voxel * spacing, with the origin at "
                      "the outer corner of voxel 0")
         ->check(CLI::IsMember({"physical", "volume"}));
@@ -124,10 +186,12 @@ void add_export(CLI::App& program)
     add_input_options(*command, options->common);
     add_output_options(*command, options->common);
     command->footer(
-        "Masks, offsets, traces and meshes lie where the volume's file says: NRRD and OME-Zarr say it in their own "
+        "Masks, offsets, traces, meshes and surfaces lie where the volume's file says: NRRD and OME-Zarr say it in "
+        "their own "
         "way, "
-        "traces\nand meshes in comments; in TIFF, which has no place for it, only SHVR reads it.\n"
-        "Example:\n  shvr export scan/ --trace veins.swc --mesh veins.ply --metrics veins.csv");
+        "traces,\nmeshes and surfaces in comments; in TIFF, which has no place for it, only SHVR reads it.\n"
+        "Example:\n  shvr export scan/ --trace veins.swc --mesh veins.ply --metrics veins.csv\n"
+        "  shvr export scan/ --surface 1+3:parts.glb");
     command->callback([options] { run_export(*options); });
 }
 

@@ -1,0 +1,42 @@
+#pragma once
+// Exports surfaces of painted groups for other programs, for `shvr export --surface`. The file's extension determines
+// the format. The annotation as in export_task.h.
+
+#include "engine/tasks/export_task.h"
+
+namespace shvr {
+
+inline constexpr int MAX_SURFACE_STEPS = 1000;
+
+struct SurfaceTask {
+    static constexpr const char* TITLE = "Export surfaces";
+
+    std::filesystem::path surface;
+    std::string groups;  ///< numbers joined by "+"; empty: all painted groups
+    int smooth = 20;     ///< steps
+    Positions space = Positions::physical;
+    int64_t budget_host_mib = 0;  ///< memory that it may take; 0: three quarters of the machine's memory
+
+    OptionNames names = OptionNames::keys;  ///< as in ExportTask
+};
+void fields(Fields& f, SurfaceTask& task);
+
+struct SurfaceResult {
+    std::vector<std::string> written;  ///< paths of the written files, in order
+    std::map<int, int64_t> triangles_by_group;
+};
+
+/// Checks the groups' numbers, the file's name and its folder.
+void check(const SurfaceTask& task);
+/// Checks that the groups are painted, too, and all files of `surface_files`.
+void check(const SurfaceTask& task, const AnnotationView& annotation);
+/// Returns the files to write: one for all groups; or one for each, NAME-GROUP.stl, where a format holds one surface
+/// and the task does not state one group. Fails if a stated group is not painted, or none is.
+std::vector<std::filesystem::path> surface_files(const SurfaceTask& task, const Mask& mask);
+
+/// Computes the surfaces of all groups, since they share borders; then writes each file atomically, and calls `wrote`
+/// after each. Files written before a failure stay.
+SurfaceResult run(const SurfaceTask& task, const AnnotationView& annotation, ProgressReporter& reporter,
+                  const std::function<void(const SurfaceResult& so_far)>& wrote = {});
+
+}  // namespace shvr
