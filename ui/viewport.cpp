@@ -279,7 +279,7 @@ void Viewport::handle(const InputEvent& event, const Model& model, bool ui_has_m
     } else if (const auto* scroll = std::get_if<ScrollEvent>(&event.what)) {
         if (!ui_has_mouse && contains(scroll->at)) this->scroll(*scroll, model, actions);
     } else if (const auto* drop = std::get_if<DropEvent>(&event.what)) {
-        TakeFile taken;
+        TakeFile taken{.previews = true};
         for (const std::string& path : drop->paths)
             if (taken.path.empty())
                 taken.path = path;

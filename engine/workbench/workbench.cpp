@@ -1,5 +1,6 @@
 #include "engine/workbench/workbench.h"
 
+#include <new>
 #include <utility>
 
 #include "engine/base/text.h"
@@ -57,6 +58,9 @@ bool Workbench::apply(const Action& action)
         return true;
     } catch (const DeviceLost&) {
         throw;
+    } catch (const std::bad_alloc& error) {
+        say(sentence(row_of(action).name, ": ", told_of(error)), Weight::error);
+        return false;
     } catch (const std::exception& error) {
         say(told_of(error), Weight::error);
         return false;

@@ -57,6 +57,8 @@ class Drop(Seen):
         trace.write_text("-v 30, 32, 32, 1, 2\n")
         other.write_text("nothing that is known\n")
         self.drop(curve, trace)
+        self.see("A trace of 1 node and 0 internodes replaces one of 0 nodes", self.PREVIEW)
+        self.press("Enter")
         self.told(f"{trace.name} is taken")
         self.drop(other)
         self.see("Error: ", "Status")
@@ -135,6 +137,23 @@ class Drop(Seen):
         self.see(f"+{side**3}", self.PREVIEW)
         self.click_on("Cancel", self.PREVIEW)
         self.finish()
+
+    def test_a_dropped_file_that_states_that_it_is_a_mask_is_previewed(self):
+        session = self.write_ball(volume={"procedural": "sphere", "size": [16, 16, 16]})
+        self.open_scan(session, preferences={"hints_seen": 3})
+        mask = self.folder / "mask.nrrd"
+        mask.write_bytes(b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 16 16 16\nencoding: raw\n"
+                         b"shvr_content:=mask\n\n" + b"\0" * 2048 + b"\2" * 2048)
+        for button in ("Cancel", "Load"):
+            self.drop(mask)
+            self.see("2048 voxels change their group.", self.PREVIEW)
+            self.see("+2048", self.PREVIEW)
+            self.click_on(button, self.PREVIEW)
+            self.see_no_more("Cancel", self.PREVIEW)
+            if button == "Cancel":
+                self.assertFalse(any("is taken" in seen["text"] for seen in self.seen(window="Status")))
+        self.told("mask.nrrd is taken")
+        self.assertEqual(self.finish()["voxels_in_group"], {"2": 2048})
 
     def test_a_label_image_opened_as_a_scan_is_told_of_and_loaded_into_its_scan(self):
         session = self.write_ball(volume={"procedural": "sphere", "size": [16, 16, 16]})

@@ -217,6 +217,7 @@ class Memory(Seen):
         said = self.check_refusal({"LD_PRELOAD": stub, "SHVR_SHORT_BYTES": 1 << 20, "SHVR_SHORT_WHILE": short,
                                    "SHVR_SHORT_LOG": refused}, short, refused, f"{self.folder / 'large.nrrd'}: ")
         self.assertIn("host memory is exhausted", said)
+        self.assertRegex(self.told, "large.nrrd: host memory is exhausted, with [0-9]+ MiB in use; expected more: close")
 
     def test_a_scan_that_device_memory_is_too_short_for_is_refused_in_words_and_the_work_goes_on(self):
         short, refused = self.folder / "short", self.folder / "short.log"
@@ -252,6 +253,7 @@ class Memory(Seen):
         self.see("Opened ")
         report = self.finish()
         self.assertTrue(any(line.startswith(f"Opened {scan}") for line in report["messages"]), report["messages"])
+        self.told = "\n".join(report["messages"])
         # The strokes are complete although they were not saved.
         exported = self.check_json("export", self.folder / "session.json", "--mask", self.folder / "mask.nrrd")
         self.assertEqual(set(exported["voxels_by_group"]), {"3", "5"})

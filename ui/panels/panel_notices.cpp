@@ -120,9 +120,7 @@ void question_of_use(const Model& model, Actions& actions)
     std::optional<Action> chosen;
     const auto button = [&](const char* name, FileUse use) {
         if (!ImGui::Button(name)) return;
-        // A single file of annotation is previewed before loading; several files are loaded together without a preview.
-        const bool is_previewed = use != FileUse::scan && file.beside.empty();
-        chosen = is_previewed ? Action(PreviewLoad{file.path, use}) : Action(TakeFile{file.path, file.beside, use});
+        chosen = TakeFile{file.path, file.beside, use, true};
     };
     button("Load as the mask", FileUse::mask);
     if (file.may_be_offsets) button("Load as density offsets", FileUse::offsets);

@@ -68,6 +68,7 @@ struct TakeFile {
     std::filesystem::path path;
     std::string beside{};  ///< paths of the other files dropped together with this one, one per line
     FileUse use = FileUse::by_contents;
+    bool previews = false;  ///< annotation for the open document is previewed (PreviewLoad) instead of added at once
 };
 
 /// Adds annotation or a transfer function to the open document, as a step that can be undone; opens no document.
@@ -197,6 +198,8 @@ inline constexpr auto WORK_ACTIONS = std::tuple{
                                  f.text("beside", a.beside,
                                         {"paths of the other files in the same drop, one per line"});
                                  f.choice("use", a.use, {"what the file is, if its contents do not state it"});
+                                 f.flag("previews", a.previews,
+                                        {"states first what annotation of the open scan changes; \"load\" loads it"});
                              }),
     row<LoadAnnotation, FileTaker>(
         {"load", "Load annotation", WORK_GROUP,

@@ -1,7 +1,12 @@
 #include "engine/workbench/models/messages.h"
 
+#include <sys/resource.h>
+
 #include <algorithm>
+#include <new>
 #include <string_view>
+
+#include "engine/base/error.h"
 
 namespace shvr::ui {
 
@@ -15,6 +20,16 @@ size_t end_of_path(const std::string& text, size_t begin)
 }
 
 }  // namespace
+
+std::string told_of(const std::exception& error)
+{
+    if (!dynamic_cast<const std::bad_alloc*>(&error)) return error.what();
+    rusage usage{};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return sentence("host memory is exhausted, with ", usage.ru_maxrss / 1024,
+                    " MiB in use; expected more: close other programs, or set a smaller budget for Memory in the "
+                    "preferences");
+}
 
 std::string without_folders(const std::string& text)
 {

@@ -6,16 +6,13 @@
 #include <ctime>
 #include <deque>
 #include <exception>
-#include <new>
 #include <string>
 
 namespace shvr::ui {
 
-/// Returns an exception's message in the form in which users see it.
-inline std::string told_of(const std::exception& error)
-{
-    return dynamic_cast<const std::bad_alloc*>(&error) ? "host memory is exhausted" : error.what();
-}
+/// Returns the message of an exception in the form that is shown to the user. Exhausted memory is reported with the
+/// amount that the program has used, and with what helps.
+std::string told_of(const std::exception& error);
 
 enum class Weight {
     done,     ///< the result of an action

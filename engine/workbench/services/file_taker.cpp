@@ -64,6 +64,7 @@ void FileTaker::act(const Open& action)
     unclear_.reset();
     preview_.reset();
     previewed_.reset();
+    to_preview_.clear();
     if (action.saves_outside) others_.allow_outside(action.path);
     others_.begin_open(action.path, lines_of(action.settings), {}, action.settings.empty());
 }
@@ -128,33 +129,35 @@ void FileTaker::act(const LookAtFile& action)
 void FileTaker::act(const TakeFile& action)
 {
     unclear_.reset();
+    const Step step = action.previews ? Step::preview : Step::load;
     std::vector<std::filesystem::path> others;
     for (const std::string& line : lines_of(action.beside)) others.emplace_back(line);
     if (action.use == FileUse::scan) return others_.begin_open(action.path, {}, others, false);
     if (action.use != FileUse::by_contents) {
-        take_as(action.use, action.path);
-        for (const std::filesystem::path& path : others) act(TakeFile{.path = path});
+        take_as(action.use, action.path, step);
+        for (const std::filesystem::path& path : others) act(TakeFile{.path = path, .previews = action.previews});
         return;
     }
     if (!others.empty()) {
         others.insert(others.begin(), action.path);
-        return take_together(std::move(others));
+        return take_together(std::move(others), step);
     }
     std::optional<VolumeInfo> volume;
     if (document_) volume = document_->volume();
     const std::filesystem::path open = document_ ? document_->session.volume_path : std::filesystem::path();
-    jobs_.start("looking at " + short_name(action.path), [this, path = action.path, volume, open](ProgressReporter&) {
-        WhatItIs found = what_is(path, volume ? &*volume : nullptr);
-        // The file of the open scan cannot also be annotation of that scan.
-        std::error_code ignored;
-        if (found.may_be_annotation && std::filesystem::equivalent(path, open, ignored))
-            found = {.content = FileContent::volume};
-        return Jobs::Completion([this, path, found] {
-            if (found.may_be_annotation) return ask_what_it_is({.path = path});
-            if (!found.content) fail(found.why_not);
-            take(*found.content, path);
-        });
-    });
+    jobs_.start("looking at " + short_name(action.path),
+                [this, path = action.path, step, volume, open](ProgressReporter&) {
+                    WhatItIs found = what_is(path, volume ? &*volume : nullptr);
+                    // The file of the open scan cannot also be annotation of that scan.
+                    std::error_code ignored;
+                    if (found.may_be_annotation && std::filesystem::equivalent(path, open, ignored))
+                        found = {.content = FileContent::volume};
+                    return Jobs::Completion([this, path, step, found] {
+                        if (found.may_be_annotation) return ask_what_it_is({.path = path});
+                        if (!found.content) fail(found.why_not);
+                        take(*found.content, path, step);
+                    });
+                });
 }
 
 void FileTaker::act(const DismissUnclearFile&)
@@ -174,11 +177,11 @@ void FileTaker::ask_what_it_is(UnclearFile file)
 
 /// Takes several files. Annotation that is dropped with a scan must not be added to the scan that is still open. A
 /// volume of the open scan's size counts as a scan if a mask is dropped with it; otherwise, the user is asked.
-void FileTaker::take_together(std::vector<std::filesystem::path> paths)
+void FileTaker::take_together(std::vector<std::filesystem::path> paths, Step step)
 {
     std::optional<VolumeInfo> volume;
     if (document_) volume = document_->volume();
-    jobs_.start(sentence("looking at ", paths.size(), " files"), [this, paths, volume](ProgressReporter&) {
+    jobs_.start(sentence("looking at ", paths.size(), " files"), [this, paths, step, volume](ProgressReporter&) {
         std::vector<std::filesystem::path> opened, others;
         bool is_unclear = false, has_mask = false;
         for (const std::filesystem::path& path : paths) {
@@ -188,7 +191,8 @@ void FileTaker::take_together(std::vector<std::filesystem::path> paths)
             const bool may_open = found.may_be_annotation || (found.content && is_opened(*found.content));
             (may_open ? opened : others).push_back(path);
         }
-        return Jobs::Completion([this, opened, others, asks = is_unclear && !has_mask, asks_of_labels = !has_mask] {
+        return Jobs::Completion([this, opened, others, step, asks = is_unclear && !has_mask,
+                                 asks_of_labels = !has_mask] {
             if (opened.size() > 1)
                 fail(opened[0].string(), " and ", opened[1].string(),
                      ": each can be opened; expected one scan, session or project at a time, alone or with its mask, "
@@ -199,15 +203,17 @@ void FileTaker::take_together(std::vector<std::filesystem::path> paths)
                 return ask_what_it_is({.path = opened[0], .beside = beside});
             }
             if (opened.size() == 1) return others_.begin_open(opened[0], {}, others, asks_of_labels);
-            for (const std::filesystem::path& path : others) act(TakeFile{.path = path});
+            for (const std::filesystem::path& path : others)
+                act(TakeFile{.path = path, .previews = step == Step::preview});
         });
     });
 }
 
-void FileTaker::take(FileContent content, const std::filesystem::path& path)
+/// A transfer function is not previewed: it is seen at once, and changes no annotation.
+void FileTaker::take(FileContent content, const std::filesystem::path& path, Step step)
 {
     if (is_opened(content)) return others_.begin_open(path, {}, {}, true);
-    take_as(use_of(content), path);
+    take_as(use_of(content), path, content == FileContent::transfer_function ? Step::load : step);
 }
 
 // ---- Annotation and transfer functions loaded into the open document ------------------------------------------------
@@ -231,6 +237,11 @@ struct FileTaker::ReadFile {
     }
 };
 
+bool FileTaker::has_preview() const
+{
+    return preview_ && previewed_->opening == desk_.openings;
+}
+
 /// Never opens a document in place of the open scan, whatever the file contains: the user asked to add annotation.
 void FileTaker::act(const LoadAnnotation& action)
 {
@@ -239,7 +250,15 @@ void FileTaker::act(const LoadAnnotation& action)
     const std::shared_ptr<const ReadFile> read = std::exchange(previewed_, nullptr);
     const bool is_read = read && read->path == action.path && read->opening == desk_.openings;
     const bool is_wanted = action.what == FileUse::by_contents || (is_read && read->use() == action.what);
-    if (is_read && is_wanted) return load(*read);
+    if (is_read && is_wanted) {
+        try {
+            load(*read);
+        } catch (...) {
+            show_next_preview();
+            throw;
+        }
+        return show_next_preview();
+    }
     if (action.what != FileUse::by_contents) return take_as(action.what, action.path);
     load_by_contents(action.path, Step::load);
 }
@@ -249,7 +268,7 @@ void FileTaker::act(const PreviewLoad& action)
     unclear_.reset();
     preview_.reset();
     previewed_.reset();
-    if (action.path.empty()) return;
+    if (action.path.empty()) return show_next_preview();
     if (action.what != FileUse::by_contents) return take_as(action.what, action.path, Step::preview);
     load_by_contents(action.path, Step::preview);
 }
@@ -319,8 +338,10 @@ std::vector<Change> FileTaker::changes_by(const ReadFile& read) const
     return changes_between(*read.part, document_->annotator.document(), *read.found);
 }
 
+/// Shows the files of a drop one after the other: what one changes depends on whether those before it were loaded.
 void FileTaker::show_preview(std::shared_ptr<const ReadFile> read)
 {
+    if (has_preview()) return to_preview_.push_back(std::move(read));
     LoadPreview preview{.path = read->path, .part = read->part};
     if (read->part) {
         const std::vector<Change> changes = changes_by(*read);
@@ -335,6 +356,15 @@ void FileTaker::show_preview(std::shared_ptr<const ReadFile> read)
     }
     preview_ = std::move(preview);
     previewed_ = std::move(read);
+}
+
+void FileTaker::show_next_preview()
+{
+    while (!to_preview_.empty() && !has_preview()) {
+        const std::shared_ptr<const ReadFile> next = to_preview_.front();
+        to_preview_.pop_front();
+        if (document_ && next->opening == desk_.openings) show_preview(next);
+    }
 }
 
 void FileTaker::load_transfer_function(const ReadFile& read)

@@ -1,6 +1,8 @@
 #pragma once
 // Opens, describes or takes files, including files dropped onto the window. Decides by content which kind a file is.
 
+#include <deque>
+
 #include "engine/tasks/file_content.h"
 #include "engine/workbench/desk/service.h"
 
@@ -34,21 +36,24 @@ public:
     {
         return {.candidate = candidate_.get(),
                 .unclear_file = unclear_ ? &*unclear_ : nullptr,
-                .load_preview = preview_ ? &*preview_ : nullptr};
+                .load_preview = has_preview() ? &*preview_ : nullptr};
     }
 
 private:
     enum class Step { preview, load };
     struct ReadFile;
-    void take(FileContent content, const std::filesystem::path& path);
+    /// A preview ends with the document that it was made for.
+    bool has_preview() const;
+    void take(FileContent content, const std::filesystem::path& path, Step step);
     void take_as(FileUse use, const std::filesystem::path& path, Step step = Step::load);
     void load_by_contents(const std::filesystem::path& path, Step step);
     void read_transfer_function(const std::filesystem::path& path, Step step);
     void read_annotation(Part part, const std::filesystem::path& path, Step step);
-    void take_together(std::vector<std::filesystem::path> paths);
+    void take_together(std::vector<std::filesystem::path> paths, Step step);
     void go_on_with(std::shared_ptr<const ReadFile> read, Step step);
     std::vector<Change> changes_by(const ReadFile& read) const;
     void show_preview(std::shared_ptr<const ReadFile> read);
+    void show_next_preview();
     void load(const ReadFile& read);
     void load_transfer_function(const ReadFile& read);
 
@@ -56,7 +61,8 @@ private:
     std::unique_ptr<Candidate> candidate_;
     std::optional<UnclearFile> unclear_;
     std::optional<LoadPreview> preview_;
-    std::shared_ptr<const ReadFile> previewed_;  ///< what `preview_` describes
+    std::shared_ptr<const ReadFile> previewed_;               ///< what `preview_` describes
+    std::deque<std::shared_ptr<const ReadFile>> to_preview_;  ///< dropped together with that, shown after it
 };
 
 }  // namespace shvr::ui

@@ -85,7 +85,7 @@ void Opener::end(std::exception_ptr failure)
     try {
         std::rethrow_exception(failure);
     } catch (const std::bad_alloc& error) {
-        why = sentence(ended->path.string(), ": ", told_of(error), "; close other programs, and open it again");
+        why = sentence(ended->path.string(), ": ", told_of(error), "; then open it again");
     } catch (const std::exception& error) {
         why = error.what();
     } catch (...) {

@@ -182,6 +182,7 @@ const Row ROWS[] = {
     {R"({"op":"take_file","path":"FOLDER/look.json"})", "saved, transfer_function, undo"},
     {R"({"op":"take_file","path":"FOLDER/line.txt"})", "saved, trace, undo"},
     {R"({"op":"take_file","path":"FOLDER/other.mask"})", "saved, undo, voxels"},
+    {R"({"op":"take_file","path":"FOLDER/other.mask","previews":true})", "load_preview"},
     {R"({"op":"load","path":"FOLDER/other.mask"})", "saved, undo, voxels"},
     {R"({"op":"load","path":"FOLDER/line.txt","what":"trace"})", "saved, trace, undo"},
     {R"({"op":"preview_load","path":"FOLDER/other.mask"})", "load_preview"},

@@ -1,5 +1,5 @@
-// Files dropped on the window: their kinds, loading them, pictures with their sessions, and work that was recovered at
-// opening.
+// Files dropped on the window: their kinds, pictures with their sessions, and work that was recovered at opening. Label
+// images and what loading annotation changes are in label_images_test.cpp.
 
 #include <doctest/doctest.h>
 
@@ -7,59 +7,15 @@
 #include "engine/base/image_file.h"
 #include "engine/picture/probe_look.h"
 #include "engine/session/picture_session.h"
-#include "tests/support/gpu.h"
-#include "tests/support/volume_files.h"
-#include "tests/support/workbench_state.h"
+#include "tests/gpu/workbench/desk_of_files.h"
 
 using namespace shvr;
 using namespace shvr::test;
 using namespace shvr::ui;
 
-namespace {
-
-/// Images of the texts: a solid block per text, half as wide per letter as it is high.
-std::vector<TextImage> blocks(std::span<const std::string> texts, double pixels)
-{
-    std::vector<TextImage> images;
-    for (const std::string& text : texts) {
-        TextImage image{.pixels = {int(0.5 * pixels * double(text.size())), int(pixels)}, .coverage{}};
-        image.coverage.assign(size_t(image.pixels.x) * size_t(image.pixels.y), 255);
-        images.push_back(std::move(image));
-    }
-    return images;
-}
-
-struct Desk {
-    TemporaryFolder folder;
-    Workbench bench;
-
-    explicit Desk(Renderer& renderer, const glm::uvec2& pixels = {48, 40})
-        : bench(renderer, {.has_servo = false, .draw_texts = blocks})
-    {
-        bench.set_pixels(pixels);
-        std::string scan = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 24 20 16\nencoding: raw\n\n";
-        for (int voxel = 0; voxel < 24 * 20 * 16; ++voxel) scan += char(voxel * 11 % 251);
-        folder.write("scan.nrrd", scan);
-    }
-    std::string path(const char* name) const { return (folder.path / name).string(); }
-    bool said(const std::string& text) const
-    {
-        for (const Message& message : bench.messages().all())
-            if (message.text.find(text) != std::string::npos) return true;
-        return false;
-    }
-    void open(const char* name)
-    {
-        bench.perform(Open{path(name)});
-        settle(bench);
-    }
-};
-
-}  // namespace
-
 TEST_CASE_FIXTURE(OnDevice, "what a file is and takes is known before it is loaded; why it cannot be opened, too")
 {
-    Desk desk(renderer());
+    FilesDesk desk(renderer());
     const auto look = [&](const char* name, const std::string& settings) -> const Candidate& {
         desk.bench.perform(LookAtFile{desk.path(name), settings});
         settle(desk.bench);
@@ -91,7 +47,7 @@ TEST_CASE_FIXTURE(OnDevice, "what a file is and takes is known before it is load
 
 TEST_CASE_FIXTURE(OnDevice, "a bare scan that nothing was saved of is no project that is saved")
 {
-    Desk desk(renderer());
+    FilesDesk desk(renderer());
     desk.open("scan.nrrd");
     CHECK(saved_in_words(desk.bench.model()) == std::string("no project yet"));
     desk.bench.perform(NodeOp{.at = {10, 12, 14}, .radius_voxels = 2.0, .group = uint8_t{2}});
@@ -106,7 +62,7 @@ TEST_CASE_FIXTURE(OnDevice, "a bare scan that nothing was saved of is no project
 
 TEST_CASE_FIXTURE(OnDevice, "what cannot be opened leaves the start page, with the path and the reason")
 {
-    Desk desk(renderer());
+    FilesDesk desk(renderer());
     desk.folder.write("broken.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 8 8\n\n");
     desk.bench.begin_open(desk.path("broken.nrrd"), {});
     settle(desk.bench);
@@ -121,7 +77,7 @@ TEST_CASE_FIXTURE(OnDevice, "what cannot be opened leaves the start page, with t
 
 TEST_CASE_FIXTURE(OnDevice, "what is dropped is taken by its contents, whatever its name; the rest is refused in words")
 {
-    Desk desk(renderer());
+    FilesDesk desk(renderer());
     const auto drop = [&](const char* name) {
         desk.bench.perform(TakeFile{desk.path(name)});
         settle(desk.bench);
@@ -174,215 +130,9 @@ TEST_CASE_FIXTURE(OnDevice, "what is dropped is taken by its contents, whatever 
     CHECK(desk.bench.messages().all().back().weight == Weight::error);  // a session is one by its name, .json
 }
 
-TEST_CASE_FIXTURE(OnDevice, "a mask is not taken for a scan: it is loaded, refused with both sizes, or asked about")
-{
-    Desk desk(renderer());
-    desk.open("scan.nrrd");
-    desk.bench.perform(
-        PaintOp{.brush = Brush::fill, .group = 3, .threshold = 100, .radius_voxels = 5, .path = {{12, 10, 8}}});
-    desk.bench.perform(PaintOp{.brush = Brush::fill,
-                               .radius_voxels = 3,
-                               .path = {{12, 10, 8}},
-                               .density = DensityBrush{.offset = 40},
-                               .paints_group = false});
-    const int64_t painted = desk.bench.model().voxels_by_group[3];
-    REQUIRE(painted > 0);
-    ExportTask task;
-    task.mask = desk.path("mask.nrrd");
-    task.offset = desk.path("offsets.nrrd");
-    desk.bench.perform(task);
-    settle(desk.bench);
-    task = {};
-    task.mask = desk.path("mask.tif");
-    desk.bench.perform(task);
-    settle(desk.bench);
-    task.mask = desk.path("labels.zarr");
-    desk.bench.perform(task);
-    settle(desk.bench);
-    const auto scan_is_open = [&] { return desk.bench.document().session.volume_path.filename() == "scan.nrrd"; };
-    const auto perform = [&](const Action& action) {
-        desk.bench.perform(action);
-        settle(desk.bench);
-        CHECK(scan_is_open());
-    };
-    const auto erase = [&] {
-        perform(PaintOp{.brush = Brush::fill, .group = 0, .threshold = 0, .radius_voxels = 30, .path = {{12, 10, 8}}});
-        CHECK(desk.bench.model().voxels_by_group[3] == 0);
-    };
-    const std::string shrunk = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 12 20 16\nencoding: raw\n";
-    desk.folder.write("small.nrrd", shrunk + "\n" + std::string(12 * 20 * 16, '\1'));
-    desk.folder.write("small-mask.nrrd", shrunk + "shvr_content:=mask\n\n" + std::string(12 * 20 * 16, '\1'));
-    desk.folder.write("small.mask", std::string(12 * 20 * 16, '\1'));
-    std::string foreign = bytes_of_file(desk.path("mask.tif"));
-    foreign.replace(foreign.find("shvr_content="), 12, "other_key123");
-    desk.folder.write("foreign.tif", foreign);
-    for (const bool is_dropped : {false, true}) {
-        CAPTURE(is_dropped);
-        const auto take = [&](const char* name) {
-            if (is_dropped) return perform(TakeFile{.path = desk.path(name)});
-            perform(LoadAnnotation{.path = desk.path(name)});
-        };
-        for (const char* name : {"mask.nrrd", "mask.tif", "labels.zarr"}) {
-            CAPTURE(name);
-            erase();
-            take(name);
-            CHECK(desk.bench.model().voxels_by_group[3] == painted);
-            CHECK(desk.bench.model().unclear_file == nullptr);
-            perform(UndoOp{1});
-            CHECK(desk.bench.model().voxels_by_group[3] == 0);
-        }
-        take("offsets.nrrd");
-        CHECK(desk.said("its density offsets is already in use"));
-        // A TIFF of another program states nothing: by intent it is a mask, dropped it may be another scan.
-        take("foreign.tif");
-        if (is_dropped) {
-            REQUIRE(desk.bench.model().unclear_file);
-            CHECK(desk.bench.model().unclear_file->path == desk.path("foreign.tif"));
-            CHECK(desk.bench.model().unclear_file->may_be_scan);
-            CHECK(desk.bench.model().voxels_by_group[3] == 0);
-            perform(DismissUnclearFile{});
-            CHECK(desk.bench.model().unclear_file == nullptr);
-            take("foreign.tif");
-            perform(TakeFile{.path = desk.path("foreign.tif"), .use = FileUse::mask});
-        }
-        CHECK(desk.bench.model().unclear_file == nullptr);
-        CHECK(desk.bench.model().voxels_by_group[3] == painted);
-        for (const char* name : {"small-mask.nrrd", "small.mask", "small.nrrd"}) {
-            if (is_dropped && std::string(name) == "small.nrrd") continue;  // another scan, by what it states
-            CAPTURE(name);
-            take(name);
-            CHECK(desk.bench.messages().all().back().weight == Weight::error);
-            const std::string last = desk.bench.messages().all().back().text;
-            CAPTURE(last);
-            CHECK(last.find("expected") != std::string::npos);
-            const bool has_sizes = last.find("12 20 16") != std::string::npos || last.find("3840") != std::string::npos;
-            CHECK(has_sizes);
-            CHECK(desk.bench.model().voxels_by_group[3] == painted);
-        }
-    }
-    // Floats may be offsets or a mask of another program; by intent they are no scan.
-    std::string floats = "NRRD0004\ntype: float\ndimension: 3\nsizes: 24 20 16\nencoding: raw\nendian: little\n\n";
-    desk.folder.write("floats.nrrd", floats + std::string(size_t{4} * 24 * 20 * 16, '\0'));
-    perform(LoadAnnotation{.path = desk.path("floats.nrrd")});
-    REQUIRE(desk.bench.model().unclear_file);
-    CHECK_FALSE(desk.bench.model().unclear_file->may_be_scan);
-    perform(DismissUnclearFile{});
-    desk.folder.write("other.session.json", R"({"shvr_session": 1, "volume": {"path": "small.nrrd"}})");
-    perform(LoadAnnotation{.path = desk.path("other.session.json")});
-    CHECK(desk.said("is a session; expected a mask, density offsets, a trace or a transfer function"));
-    // Dropped again, the scan that is open is not its own mask; and what the user says counts.
-    perform(TakeFile{.path = desk.path("scan.nrrd")});
-    CHECK(desk.bench.model().unclear_file == nullptr);
-    desk.bench.perform(TakeFile{.path = desk.path("mask.tif"), .use = FileUse::scan});
-    settle(desk.bench);
-    CHECK(desk.bench.document().session.volume_path.filename() == "mask.tif");
-}
-
-// Kind (Masks): a label image of another program, given as a scan
-TEST_CASE_FIXTURE(OnDevice, "a label image that is opened as a scan is asked about, or reported where nothing is open")
-{
-    Desk desk(renderer());
-    const std::string header = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 24 20 16\nencoding: raw\n\n";
-    std::string voxels(24 * 20 * 16, '\0');
-    for (int number = 2000; number < 4000; ++number) voxels[size_t(number)] = number < 2500 ? '\1' : '\4';
-    desk.folder.write("labels.nrrd", header + voxels);
-    const auto scan = [&] { return desk.bench.document().session.volume_path.filename().string(); };
-    const auto perform = [&](const Action& action) {
-        desk.bench.perform(action);
-        settle(desk.bench);
-    };
-    // Nothing is open: it is opened, and its scan is asked for.
-    perform(Open{desk.path("labels.nrrd")});
-    CHECK(scan() == "labels.nrrd");
-    CHECK(desk.bench.model().looks_like_labels == "its voxels have the values 0, 1 and 4 only");
-    CHECK(desk.said("it looks like a label image: its voxels have the values 0, 1 and 4 only"));
-    perform(TakeFile{desk.path("scan.nrrd"), desk.path("labels.nrrd") + "\n", FileUse::scan});
-    CHECK(scan() == "scan.nrrd");
-    CHECK(desk.bench.model().looks_like_labels.empty());
-    CHECK(desk.bench.model().voxels_by_group[1] == 500);
-    CHECK(desk.bench.model().voxels_by_group[4] == 1500);
-    perform(UndoOp{1});
-    CHECK(desk.bench.model().voxels_by_group[4] == 0);
-    // A scan is open: that stays, and the user is asked.
-    perform(Open{desk.path("labels.nrrd")});
-    CHECK(scan() == "scan.nrrd");
-    REQUIRE(desk.bench.model().unclear_file);
-    CHECK(desk.bench.model().unclear_file->why ==
-          "looks like a label image: its voxels have the values 0, 1 and 4 only");
-    perform(TakeFile{.path = desk.path("labels.nrrd"), .use = FileUse::scan});
-    CHECK(scan() == "labels.nrrd");
-    perform(DismissNotices{});
-    CHECK(desk.bench.model().looks_like_labels.empty());
-    // A session says that the user means it as a scan.
-    desk.folder.write("mine.json", R"({"shvr_session": 1, "volume": {"path": "labels.nrrd"}})");
-    perform(Open{desk.path("mine.json")});
-    CHECK(scan() == "labels.nrrd");
-    CHECK(desk.bench.model().unclear_file == nullptr);
-    CHECK(desk.bench.model().looks_like_labels.empty());
-}
-
-TEST_CASE_FIXTURE(OnDevice, "a preview states what loading would change, loads nothing, and loading then does that")
-{
-    Desk desk(renderer());
-    desk.open("scan.nrrd");
-    const auto perform = [&](const Action& action) {
-        desk.bench.perform(action);
-        settle(desk.bench);
-    };
-    std::string first(24 * 20 * 16, '\0'), second = first;
-    for (int number = 1000; number < 3000; ++number) first[size_t(number)] = '\3';
-    for (int number = 2000; number < 4000; ++number) second[size_t(number)] = number < 3500 ? '\3' : '\7';
-    desk.folder.write("first.mask", first);
-    desk.folder.write("second.mask", second);
-    perform(LoadAnnotation{desk.path("first.mask")});
-    REQUIRE(desk.bench.model().voxels_by_group[3] == 2000);
-    const size_t steps = desk.bench.model().undoable;
-    perform(PreviewLoad{desk.path("second.mask")});
-    REQUIRE(desk.bench.model().load_preview);
-    const LoadPreview shown = *desk.bench.model().load_preview;
-    CHECK(shown.path == desk.path("second.mask"));
-    CHECK(shown.part == Part::mask);
-    CHECK(shown.changes == "2000 voxels change their group.");
-    REQUIRE(shown.groups.size() == 2);
-    CHECK(shown.groups[0] == MaskPreview::Group{.group = 3, .before = 2000, .gained = 500, .lost = 1000});
-    CHECK(shown.groups[1] == MaskPreview::Group{.group = 7, .before = 0, .gained = 500, .lost = 0});
-    CHECK(desk.bench.model().undoable == steps);
-    CHECK(desk.bench.model().voxels_by_group[3] == 2000);
-    perform(PreviewLoad{});
-    CHECK(desk.bench.model().load_preview == nullptr);
-    perform(PreviewLoad{desk.path("second.mask")});
-    desk.folder.write("second.mask", first);  // what is loaded is what was previewed
-    perform(LoadAnnotation{desk.path("second.mask"), FileUse::mask});
-    CHECK(desk.bench.model().load_preview == nullptr);
-    CHECK(desk.bench.model().voxels_by_group[3] == shown.groups[0].after());
-    CHECK(desk.bench.model().voxels_by_group[7] == shown.groups[1].after());
-    CHECK(desk.bench.model().undoable == steps + 1);
-    perform(UndoOp{1});
-    perform(PreviewLoad{desk.path("first.mask")});
-    REQUIRE(desk.bench.model().load_preview);
-    CHECK_FALSE(desk.bench.model().load_preview->changes_anything);
-    CHECK(desk.bench.model().load_preview->changes == "The scan already has this mask.");
-    desk.folder.write("line.txt", "-v 10, 12, 14, 1, 2\n-v 12, 12, 14, 1, 2\n-l 0, 1, 2\n");
-    perform(PreviewLoad{desk.path("line.txt")});
-    REQUIRE(desk.bench.model().load_preview);
-    CHECK(desk.bench.model().load_preview->changes ==
-          "A trace of 2 nodes and 1 internode replaces one of 0 nodes and 0 internodes.");
-    desk.folder.write("look.json", R"({"points":[{"intensity":70,"opacity":0},{"intensity":210,"opacity":0.8}]})");
-    perform(PreviewLoad{desk.path("look.json")});
-    REQUIRE(desk.bench.model().load_preview);
-    CHECK(desk.bench.model().load_preview->changes == "The transfer function would be replaced.");
-    perform(LoadAnnotation{desk.path("look.json"), FileUse::look});
-    CHECK(desk.said("look.json is taken; undo takes it back"));
-    CHECK(desk.bench.model().undoable == steps + 1);
-    desk.folder.write("small.mask", std::string(12 * 20 * 16, '\1'));
-    perform(PreviewLoad{desk.path("small.mask")});
-    CHECK(desk.bench.model().load_preview == nullptr);
-    CHECK(desk.bench.messages().all().back().weight == Weight::error);
-}
-
 TEST_CASE_FIXTURE(OnDevice, "annotation that is dropped with its scan goes into that, not into what is open")
 {
-    Desk desk(renderer());
+    FilesDesk desk(renderer());
     desk.folder.write("other.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 24 20 16\nencoding: raw\n\n" +
                                         std::string(24 * 20 * 16, '\7'));
     desk.folder.write("other.mask", std::string(24 * 20 * 16, '\3'));
@@ -420,7 +170,7 @@ TEST_CASE_FIXTURE(OnDevice, "annotation that is dropped with its scan goes into 
 
 TEST_CASE_FIXTURE(OnDevice, "a corrected spacing is saved, nodes stay at their voxels, and it is there next time")
 {
-    Desk desk(renderer());
+    FilesDesk desk(renderer());
     desk.open("scan.nrrd");
     desk.bench.perform(NodeOp{.at = {10, 12, 14}, .radius_voxels = 2.0, .group = uint8_t{2}});
     const glm::dvec3 eye = desk.bench.model().camera.eye;
@@ -445,7 +195,7 @@ TEST_CASE_FIXTURE(OnDevice, "a corrected spacing is saved, nodes stay at their v
 
 TEST_CASE_FIXTURE(OnDevice, "what was recovered at opening stays to be seen until it is dismissed")
 {
-    Desk desk(renderer());
+    FilesDesk desk(renderer());
     desk.open("scan.nrrd");
     desk.bench.perform(NodeOp{.at = {10, 12, 14}, .radius_voxels = 2.0, .group = uint8_t{2}});
     desk.bench.perform(SaveOp{});
@@ -464,7 +214,7 @@ TEST_CASE_FIXTURE(OnDevice, "what was recovered at opening stays to be seen unti
 
 TEST_CASE_FIXTURE(OnDevice, "pictures have scale bar, axes and words where that is wanted, in the picture's size")
 {
-    Desk desk(renderer(), {200, 160});
+    FilesDesk desk(renderer(), {200, 160});
     desk.open("scan.nrrd");
     desk.bench.perform(Set{R"({"interaction":{"screenshot_scale":3}})"});
     std::vector<Image8> pictures;
@@ -500,7 +250,7 @@ TEST_CASE_FIXTURE(OnDevice, "pictures have scale bar, axes and words where that 
 
 TEST_CASE_FIXTURE(OnDevice, "a picture of the window holds its session: it is rendered again bit for bit, and opened")
 {
-    Desk desk(renderer());
+    FilesDesk desk(renderer());
     desk.open("scan.nrrd");
     desk.bench.perform(
         PaintOp{.brush = Brush::fill, .group = 3, .threshold = 100, .radius_voxels = 5, .path = {{12, 10, 8}}});
@@ -553,7 +303,7 @@ TEST_CASE_FIXTURE(OnDevice, "a picture of the window holds its session: it is re
 
 TEST_CASE_FIXTURE(OnDevice, "what a file offers several of can be chosen before it is opened")
 {
-    Desk desk(renderer());
+    FilesDesk desk(renderer());
     std::string colored =
         "NRRD0004\ntype: uint8\ndimension: 4\nsizes: 3 24 20 16\nkinds: RGB-color domain domain domain\n"
         "encoding: raw\n\n";
@@ -579,7 +329,7 @@ TEST_CASE_FIXTURE(OnDevice, "what a file offers several of can be chosen before 
 
 TEST_CASE_FIXTURE(OnDevice, "Fit says what it brings into sight")
 {
-    Desk desk(renderer());
+    FilesDesk desk(renderer());
     desk.open("scan.nrrd");
     desk.bench.perform(FitView{});
     CHECK(desk.bench.messages().last() == "The whole volume is in view");
