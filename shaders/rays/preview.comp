@@ -103,7 +103,7 @@ Hit first_hit(const PreviewParams preview, const Line line)
         hit.face = hit.is_hit ? hit.face : axis;
         hit.voxel = hit.is_hit ? hit.voxel : hit.voxel + axis * towards;
         next = hit.is_hit ? next : next + vec3(axis) * apart;
-        // repeating this changes nothing: a finished lane has hit a voxel, or moves farther beyond the end
+        // same again: a lane that has left has hit a voxel, or moves farther beyond the end
         goes_on = !hit.is_hit && to < line.end && is_inside(preview, hit.voxel);
     } while (goes_on);
     count(COUNTER_CUT_SHORT, uint(goes_on));   // if a device aborts loops

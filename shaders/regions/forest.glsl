@@ -11,7 +11,7 @@ uint find_root(uint run)
 {
     uint parent = parents.of[run];
     while (parent != run) {
-        run = parent;   // repeating this changes nothing: a root is its own parent
+        run = parent;   // same again: a root is its own parent
         parent = parents.of[run];
     }
     return run;

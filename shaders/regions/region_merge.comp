@@ -21,7 +21,7 @@ uint find_root_halving(uint run)
     while (parent != run) {
         const uint above = parents.of[parent];
         if (above != parent) atomicMin(parents.of[run], above);
-        run = parent;   // repeating this changes nothing: a root is its own parent
+        run = parent;   // same again: a root is its own parent
         parent = above;
     }
     return run;
