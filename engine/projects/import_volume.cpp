@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "engine/base/error.h"
+#include "engine/base/progress.h"
 #include "engine/base/text.h"
 #include "engine/base/waits/unfinished_work.h"
 #include "engine/formats/readers.h"
@@ -292,9 +293,13 @@ private:
         const double done = all_done - double(done_at_start_);
         const double seconds = seconds_since(begin_);
         if (!(all > 0.0) || !(done > 0.0)) return;
-        options_.progress({.fraction = all_done / all,
-                           .voxels_per_second = done / all * pass_->voxels() / seconds,
-                           .seconds_left = (all - all_done) / done * seconds});
+        try {
+            options_.progress({.fraction = all_done / all,
+                               .voxels_per_second = done / all * pass_->voxels() / seconds,
+                               .seconds_left = (all - all_done) / done * seconds});
+        } catch (const Stopped&) {  // cancelled after the check above
+            throw ImportStopped("stopped");
+        }
     }
 
     OmeZarrVersion version() const { return options_.version.value_or(OmeZarrVersion::v0_4); }

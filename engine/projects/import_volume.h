@@ -76,8 +76,9 @@ struct ImportOptions {
     /// Null: 0.4; for label images, the version of the image to which they belong, or else of the replaced label image.
     std::optional<OmeZarrVersion> version{};
     bool has_shards = false;  ///< OME-Zarr 0.5 only: stores up to 512 chunks in a file (import_files.h)
-    std::function<void(const ImportProgress&)> progress{};  ///< called about every 100 ms, on the calling thread
-    const std::atomic<bool>* cancel = nullptr;              ///< checked before every task, every few milliseconds
+    /// Called about every 100 ms, on the calling thread; may throw `Stopped`, which cancels the import.
+    std::function<void(const ImportProgress&)> progress{};
+    const std::atomic<bool>* cancel = nullptr;  ///< checked before every task, every few milliseconds
     /// Collects what `source`, a GapSource, could not read; null: unreadable voxels end the import. The import reports
     /// gaps, and the project states them. An import with gaps is never resumed, since only the current run knows them.
     const Gaps* gaps = nullptr;

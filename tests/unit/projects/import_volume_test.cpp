@@ -443,6 +443,23 @@ TEST_CASE("two imports do not work on one folder at once")
     CHECK(contains(nested.said, "project.part: another process is importing into it"));
 }
 
+TEST_CASE("an import whose progress is cancelled names the folder from which it goes on")
+{
+    const Folder folder;
+    const MemorySource source = noise<uint16_t>({200, 200, 200}, VoxelType::uint16, 12);
+    std::string message;
+    try {
+        folder.import(source, "project",
+                      {.threads = 1, .progress = [](const ImportProgress&) { throw Stopped("cancelled"); }});
+    } catch (const ImportStopped& stopped) {
+        message = stopped.what();
+    }
+    CHECK(message == (folder.path / "project.part").string() +
+                         ": the import was stopped; what is done is kept, and the same command goes on from there; "
+                         "rm -r removes it");
+    CHECK(folder.import(source, "project").was_resumed);
+}
+
 TEST_CASE("an import that is asked to stop begins nothing more, wherever it is")
 {
     const Folder folder;
