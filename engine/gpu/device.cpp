@@ -5,9 +5,9 @@
 #include <cstring>
 #include <optional>
 #include <sstream>
-#include <thread>
 #include <utility>
 
+#include "engine/base/machine/machine.h"
 #include "engine/gpu/device_survey.h"
 
 namespace shvr::gpu {
@@ -225,7 +225,7 @@ void Device::read_traits()
     traits_.name = properties.properties.deviceName;
     traits_.driver = sentence(driver.driverName, " ", driver.driverInfo);
     traits_.is_cpu = properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
-    if (traits_.is_cpu) traits_.cpu_threads = std::max(1u, std::thread::hardware_concurrency());
+    if (traits_.is_cpu) traits_.cpu_threads = uint32_t(processors_allowed());
     traits_.limits = properties.properties.limits;
     traits_.is_integrated = properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;
     traits_.max_allocation_bytes = maintenance.maxMemoryAllocationSize;

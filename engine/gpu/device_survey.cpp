@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <cstring>
 #include <memory>
-#include <thread>
 
+#include "engine/base/machine/machine.h"
 #include "engine/gpu/device.h"
 
 namespace shvr::gpu {
@@ -124,7 +124,7 @@ DeviceReport report_on(const FoundDevice& device)
                                VK_API_VERSION_PATCH(version)),
             .why_unfit = why_unfit(device.row),
             .bytes = local_bytes(device.physical),
-            .threads = device.row.type == VK_PHYSICAL_DEVICE_TYPE_CPU ? std::thread::hardware_concurrency() : 0,
+            .threads = device.row.type == VK_PHYSICAL_DEVICE_TYPE_CPU ? unsigned(processors_allowed()) : 0,
             .needs = device.row.has_1_3 ? needs_of(capabilities_of(device.physical)) : std::vector<Need>(),
             .options = options_of(device.physical)};
 }

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cstring>
-#include <thread>
 #include <utility>
 
+#include "engine/base/machine/machine.h"
 #include "engine/picture/picture_job.h"
 #include "engine/volume/pyramid_source.h"
 
@@ -12,11 +12,15 @@ namespace shvr {
 
 namespace {
 
-constexpr uint64_t AUTOMATIC_HOST_BYTES = uint64_t{2} << 30;
+/// 2 GiB, or half of the memory that the process was given where that is less.
+uint64_t automatic_host_bytes()
+{
+    return std::min(uint64_t{2} << 30, memory_allowed() / 2);
+}
 
 int worker_count(int wanted)
 {
-    return wanted > 0 ? wanted : std::max(1, int(std::thread::hardware_concurrency()));
+    return wanted > 0 ? wanted : processors_allowed();
 }
 
 }  // namespace
@@ -24,7 +28,7 @@ int worker_count(int wanted)
 Renderer::Renderer(const Options& options)
     : device_options_(options.device),
       device_budget_(options.budget.device_bytes),
-      host_budget_(options.budget.host_bytes > 0 ? options.budget.host_bytes : AUTOMATIC_HOST_BYTES),
+      host_budget_(options.budget.host_bytes > 0 ? options.budget.host_bytes : automatic_host_bytes()),
       threads_(worker_count(options.threads))
 {
     restart();

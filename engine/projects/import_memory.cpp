@@ -1,11 +1,10 @@
 #include "engine/projects/import_memory.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "engine/base/error.h"
+#include "engine/base/machine/machine.h"
 #include "engine/projects/import_box.h"
 #include "engine/projects/levels/import_pyramid.h"
 #include "engine/volume/content_hash.h"
@@ -113,7 +112,7 @@ double sparse_import_bytes(const VolumeSource& source, const VolumeInfo& info, c
 double import_budget(int64_t wanted)
 {
     if (wanted > 0) return double(wanted);
-    return 0.75 * double(::sysconf(_SC_PHYS_PAGES)) * double(::sysconf(_SC_PAGESIZE));
+    return 0.75 * double(memory_allowed());
 }
 
 void check_import_budget(const std::filesystem::path& project, const VolumeInfo& info, double bytes, int64_t wanted)

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <thread>
 #include <type_traits>
 
 #include "engine/base/error.h"
+#include "engine/base/machine/machine.h"
 #include "engine/formats/zarr/project.h"
 #include "engine/projects/import_box.h"
 #include "engine/projects/import_memory.h"
@@ -65,7 +65,7 @@ bool fit_chunks(const VolumeSource& source)
 
 int import_threads(int wanted)
 {
-    return wanted > 0 ? wanted : std::max(1, int(std::thread::hardware_concurrency()));
+    return wanted > 0 ? wanted : processors_allowed();
 }
 
 void check_all_tables(const std::filesystem::path& project, const VolumeInfo& info)

@@ -1,7 +1,5 @@
 #include "tools/cli/about/machine_report.h"
 
-#include <sched.h>
-#include <sys/resource.h>
 #include <sys/utsname.h>
 #include <unistd.h>
 
@@ -9,10 +7,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <thread>
 
 #include "engine/base/assets.h"
 #include "engine/base/error.h"
+#include "engine/base/machine/machine.h"
 #include "engine/base/text.h"
 
 namespace shvr::cli {
@@ -36,33 +34,6 @@ std::string kernel_in_words()
 {
     utsname name{};
     return ::uname(&name) == 0 ? sentence(name.sysname, ' ', name.release, ' ', name.machine) : "unknown";
-}
-
-uint64_t processors_allowed()
-{
-    cpu_set_t allowed;
-    if (::sched_getaffinity(0, sizeof allowed, &allowed) == 0) return uint64_t(CPU_COUNT(&allowed));
-    return std::thread::hardware_concurrency();
-}
-
-/// Returns the lowest memory limit among this process's control groups (version 2) and its address space.
-std::optional<uint64_t> memory_limit()
-{
-    std::optional<uint64_t> least;
-    const auto take = [&](uint64_t bytes) { least = std::min(least.value_or(bytes), bytes); };
-    rlimit space{};
-    if (::getrlimit(RLIMIT_AS, &space) == 0 && space.rlim_cur != RLIM_INFINITY) take(space.rlim_cur);
-    std::ifstream groups("/proc/self/cgroup");
-    for (std::string line; std::getline(groups, line);) {
-        if (!line.starts_with("0::")) continue;
-        for (std::filesystem::path group = line.substr(3);; group = group.parent_path()) {
-            std::string limit;
-            std::ifstream("/sys/fs/cgroup" + group.string() + "/memory.max") >> limit;
-            if (const std::optional<int64_t> bytes = whole_of(limit); bytes && *bytes > 0) take(uint64_t(*bytes));
-            if (group == group.parent_path()) break;
-        }
-    }
-    return least;
 }
 
 FolderReport report_on_folder(const std::string& use, const std::filesystem::path& folder, bool is_written)
@@ -164,7 +135,7 @@ MachineReport survey_machine()
     report.kernel = kernel_in_words();
     report.build = sentence("g++ " __VERSION__ ", " SHVR_BUILD_TYPE);
     survey_vulkan(report);
-    report.processors = processors_allowed();
+    report.processors = uint64_t(processors_allowed());
     report.memory_bytes = uint64_t(::sysconf(_SC_PHYS_PAGES)) * uint64_t(::sysconf(_SC_PAGE_SIZE));
     report.limit_bytes = memory_limit();
     report.display = ui::survey_display();
