@@ -38,7 +38,7 @@ MAY_INCLUDE = {
     "engine/formats/headers": "engine/base engine/volume engine/formats engine/formats/raw",
     "engine/formats/export": "engine/base engine/volume engine/formats",
     "engine/bricks": "engine/base engine/volume engine/look shaders",
-    "engine/projects": "engine/base engine/volume engine/remote engine/formats engine/formats/zarr shaders",
+    "engine/projects": "engine/base engine/pieces engine/volume engine/remote engine/formats engine/formats/zarr shaders",
     "engine/annotation/trace": "engine/base engine/volume engine/annotation",
     "engine/annotation/measures": "engine/base engine/volume engine/annotation engine/annotation/trace",
     "engine/annotation/patterns": "engine/base engine/volume engine/annotation/trace engine/annotation/measures",
@@ -58,7 +58,8 @@ MAY_INCLUDE = {
     "engine/movie": "engine/base engine/look engine/session",
     "engine/jobs": "engine/base",
     "engine/pages": "engine/base",
-    "engine/tasks": "engine/base engine/volume engine/remote engine/look engine/components engine/formats/export engine/annotation "
+    "engine/pieces": "engine/base",
+    "engine/tasks": "engine/base engine/pieces engine/volume engine/remote engine/look engine/components engine/formats/export engine/annotation "
     "engine/annotation/trace engine/annotation/measures engine/annotation/patterns engine/annotation/meshes "
     "engine/annotation/files engine/annotation/writers engine/projects engine/session engine/jobs",
     "engine/device": "engine/base engine/volume engine/gpu engine/passes engine/look engine/bricks engine/annotation "
@@ -120,7 +121,7 @@ MAY_INCLUDE = {
     "tools/bench": "engine/base engine/annotation engine/bricks engine/components engine/pages engine/projects engine/session "
     "tests/reference tools/golden tools/report",
     "tools/golden": "engine/base engine/annotation/script engine/session engine/live engine/pages shaders",
-    "tools": "engine/base engine/remote engine/pages engine/volume engine/graph engine/gpu engine/projects engine/annotation/script engine/annotation/trace "
+    "tools": "engine/base engine/remote engine/pages engine/pieces engine/volume engine/graph engine/gpu engine/projects engine/annotation/script engine/annotation/trace "
     "engine/annotation/work engine/annotation/writers engine/session engine/jobs engine/tasks engine/movie engine/picture engine/live "
     "haptics haptics/devices haptics/hid ui engine/study engine/study/report engine/workbench "
     "engine/workbench/touch engine/workbench/lists engine/workbench/sight "
@@ -145,7 +146,7 @@ THIRD_PARTIES = {
     # the other files write JSON.
     "nlohmann/json": (
         r"nlohmann/(?!json_fwd\.hpp)",
-        r"engine/(base/json|graph/|session/|tasks/|projects/|formats/(zarr|export)/|annotation/files/).*\.cpp|tools/|tests/",
+        r"engine/(base/json|graph/|pieces/|session/|tasks/|projects/|formats/(zarr|export)/|annotation/files/).*\.cpp|tools/|tests/",
     ),
     "GDCM": (r"gdcm", r"engine/formats/dicom/|tests/unit/formats/dicom/"),
     "zlib": (r"zlib\.h", r"engine/formats/|tests/"),

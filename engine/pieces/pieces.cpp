@@ -1,0 +1,201 @@
+#include "engine/pieces/pieces.h"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <random>
+#include <span>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/base/atomic_file.h"
+#include "engine/base/atomic_writer.h"
+#include "engine/base/json.h"
+#include "engine/base/text.h"
+
+namespace shvr {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int64_t MAX_MANIFEST_BYTES = int64_t{64} << 20;
+constexpr const char* SUFFIX = ".pieces";
+
+std::string text_of(const PieceManifest& manifest)
+{
+    const nlohmann::ordered_json json = {{"shvr_pieces", 1},
+                                         {"version", manifest.version},
+                                         {"command", manifest.command},
+                                         {"folder", manifest.folder.string()},
+                                         {"tasks", manifest.tasks},
+                                         {"inputs", manifest.inputs}};
+    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::vector<std::string> texts_of(const JsonNode& list)
+{
+    std::vector<std::string> texts;
+    for (const JsonNode& element : list.elements()) texts.push_back(element.any_text());
+    return texts;
+}
+
+std::string joined(const std::vector<std::string>& words)
+{
+    std::string text;
+    for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+    return text;
+}
+
+/// Gives a complete file its final name, unless a file with that name exists. Returns whether it did.
+bool publish(const fs::path& file, const fs::path& target)
+{
+    if (::link(file.c_str(), target.c_str()) == 0) return true;
+    if (errno == EEXIST) return false;
+    // A file system without links: of two first tasks at the same instant, the later one's manifest stays, and both are
+    // compared with it.
+    const int link_error = errno;
+    std::error_code error;
+    if (fs::exists(target, error)) return false;
+    if (::rename(file.c_str(), target.c_str()) != 0)
+        fail(target.string(), ": cannot be written: ", reason_of(link_error));
+    return true;
+}
+
+std::string signature_of_file(const fs::path& path)
+{
+    struct stat status {};
+    if (::stat(path.c_str(), &status) != 0) return sentence(path.string(), " missing");
+    return sentence(path.string(), " ", status.st_size, " ", status.st_mtim.tv_sec, ".", status.st_mtim.tv_nsec);
+}
+
+}  // namespace
+
+Pieces Pieces::of_output(const fs::path& output)
+{
+    const fs::path whole = fs::absolute(output).lexically_normal();
+    fs::path folder = whole.has_filename() ? whole : whole.parent_path();
+    return Pieces(folder += SUFFIX);
+}
+
+Pieces Pieces::of_manifest(const fs::path& manifest)
+{
+    fs::path folder = fs::absolute(manifest).lexically_normal();
+    if (!folder.has_filename()) folder = folder.parent_path();
+    std::error_code ignored;
+    return Pieces(fs::is_directory(folder, ignored) ? folder : folder.parent_path());
+}
+
+fs::path Pieces::piece(int64_t task) const
+{
+    return folder_ / sentence("piece-", task);
+}
+
+bool Pieces::has(int64_t task) const
+{
+    std::error_code ignored;
+    return fs::exists(piece(task), ignored);
+}
+
+void Pieces::begin(const PieceManifest& manifest) const
+{
+    std::error_code error;
+    fs::create_directories(folder_, error);
+    if (error) fail(folder_.string(), ": cannot be created: ", error.message());
+    if (!fs::exists(manifest_path(), error)) {
+        const fs::path own = folder_ / sentence(".manifest-", std::random_device{}(), "-", ::getpid());
+        const std::string text = text_of(manifest);
+        write_file_atomically(own, std::as_bytes(std::span(text)));
+        publish(own, manifest_path());
+        fs::remove(own, error);
+    }
+    const PieceManifest found = this->manifest();
+    if (found.tasks != manifest.tasks)
+        fail(manifest_path().string(), ": the job is split into ", found.tasks, " tasks, and this is one of ",
+             manifest.tasks, "; expected the same number in all: --task I/", found.tasks, ", or remove ",
+             folder_.string(), " to start over");
+    expect_equal(found, manifest);
+}
+
+void Pieces::expect_equal(const PieceManifest& found, const PieceManifest& wanted) const
+{
+    const auto refuse = [&](const char* what, const std::string& there, const std::string& here) {
+        fail(manifest_path().string(), ": the first task ", what, " ", there, ", and this one ", here,
+             "; expected the same in all tasks: repeat what the first one had, or remove ", folder_.string(),
+             " to start over");
+    };
+    if (found.version != wanted.version) refuse("ran in shvr", found.version, wanted.version);
+    if (found.command != wanted.command) refuse("ran shvr", joined(found.command), joined(wanted.command));
+    if (found.folder != wanted.folder) refuse("ran in the folder", found.folder.string(), wanted.folder.string());
+    if (found.inputs == wanted.inputs) return;
+    const size_t shared = std::min(found.inputs.size(), wanted.inputs.size());
+    size_t at = 0;
+    while (at < shared && found.inputs[at] == wanted.inputs[at]) ++at;
+    const auto named = [at](const std::vector<std::string>& inputs) {
+        return at < inputs.size() ? inputs[at] : std::string("nothing more");
+    };
+    refuse("read (name, bytes, time)", named(found.inputs), named(wanted.inputs));
+}
+
+PieceManifest Pieces::manifest() const
+{
+    std::error_code ignored;
+    if (!fs::exists(manifest_path(), ignored))
+        fail(manifest_path().string(),
+             ": is missing; expected the manifest that the first task of a job writes: run "
+             "its command with --task 0/N");
+    const JsonDocument document = read_json(manifest_path(), MAX_MANIFEST_BYTES);
+    const JsonNode root = document.root();
+    root.required("shvr_pieces", "1, as shvr writes it").whole(1, 1);
+    return {.version = root.required("version", "the version of shvr").any_text(),
+            .command = texts_of(root.required("command", "a list of arguments")),
+            .folder = root.required("folder", "a folder").any_text(),
+            .tasks = root.required("tasks", "the number of tasks").whole(1, MAX_TASKS),
+            .inputs = texts_of(root.required("inputs", "a list of files"))};
+}
+
+std::vector<std::string> Pieces::missing(int64_t of) const
+{
+    std::vector<std::string> names;
+    for (int64_t task = 0; task < of; ++task)
+        if (!has(task)) names.push_back(TaskChoice{task, of}.in_words());
+    return names;
+}
+
+void Pieces::expect_all(int64_t of) const
+{
+    const std::vector<std::string> names = missing(of);
+    if (names.empty()) return;
+    constexpr size_t MAX_NAMED = 20;
+    std::string listed;
+    for (size_t i = 0; i < std::min(names.size(), MAX_NAMED); ++i) listed += (i == 0 ? "" : ", ") + names[i];
+    if (names.size() > MAX_NAMED) listed += sentence(" and ", names.size() - MAX_NAMED, " more");
+    throw MissingPieces(sentence(folder_.string(), ": ", counted(int64_t(names.size()), "piece"), " of ", of,
+                                 names.size() == 1 ? " is" : " are", " missing: ", listed,
+                                 "; expected all: run the job's command again with --task for each of these"),
+                        names);
+}
+
+void Pieces::remove() const
+{
+    std::error_code error;
+    fs::remove_all(folder_, error);
+    if (error) fail(folder_.string(), ": cannot be removed: ", error.message());
+}
+
+std::vector<std::string> input_signatures(const fs::path& path)
+{
+    std::error_code ignored;
+    if (path.empty()) return {};
+    if (path.string().find("://") != std::string::npos) return {path.string()};
+    if (!fs::is_directory(path, ignored)) return {signature_of_file(path)};
+    std::vector<std::string> lines;
+    for (const fs::directory_entry& entry : fs::directory_iterator(path, ignored))
+        if (!entry.is_directory(ignored)) lines.push_back(signature_of_file(entry.path()));
+    std::ranges::sort(lines);
+    return lines;
+}
+
+}  // namespace shvr
