@@ -100,13 +100,16 @@ uint64_t area_of(const PicturePart& part)
 }  // namespace
 
 PictureJob::PictureJob(Renderer& renderer, const Session& session, const Camera& camera, const RenderOptions& options,
-                       TakeRows take_rows)
+                       TakeRows take_rows, const RowRange& rows)
     : renderer_(renderer),
       look_(session.look()),
       options_(options),
       take_rows_(std::move(take_rows)),
-      size_(look_.render.size)
+      size_(look_.render.size),
+      rows_begin_(std::min(rows.lower, size_.y)),
+      rows_end_(std::clamp(rows.upper.value_or(size_.y), rows_begin_, size_.y))
 {
+    band_end_ = rows_begin_;
     const VolumeInfo& info = scene().info();
     if (scene().draws_finest()) look_.render.detail = 0.0;
     always_shown_ = voxels_of_shell(options_.probe, info);
@@ -126,7 +129,7 @@ PictureJob::PictureJob(Renderer& renderer, const Session& session, const Camera&
     const uint64_t row_bytes = PIXEL_BYTES * size_.x;
     const uint64_t band_bytes = std::min(MAX_BAND_BYTES, renderer_.memory().host_bytes_left() / 8);
     band_rows_ = uint32_t(std::clamp<uint64_t>(band_bytes / row_bytes, 1, size_.y));
-    begin_band();
+    if (rows_begin_ < rows_end_) begin_band();
 }
 
 PictureJob::~PictureJob()
@@ -137,7 +140,7 @@ PictureJob::~PictureJob()
 void PictureJob::begin_band()
 {
     band_begin_ = band_end_;
-    band_end_ = std::min(band_begin_ + band_rows_, size_.y);
+    band_end_ = std::min(band_begin_ + band_rows_, rows_end_);
     const size_t values = size_t(size_.x) * (band_end_ - band_begin_) * 4;
     // Counts two bands, since the receiver may still hold the previous band, and the copy of one part's pixels.
     constexpr uint64_t BANDS = 2;
@@ -198,7 +201,7 @@ void PictureJob::end_band()
     for (const Pane& each : panes_)
         draw_strokes(band_, strokes_of(each, overlay_, scene().info()), each.box, band_begin_);
     take_rows_(std::exchange(band_, {}));
-    if (band_end_ < size_.y) return begin_band();
+    if (band_end_ < rows_end_) return begin_band();
     renderer_.note_picture_bytes(0);
 }
 
@@ -239,7 +242,7 @@ bool PictureJob::renew_occlusion(const Progress& progress, bool waits)
 Progress PictureJob::progress_of(const PicturePart& part, int round)
 {
     if (!options_.progress) return {};
-    const double all = double(uint64_t(size_.x) * size_.y);
+    const double all = double(pixels());
     const double area = double(area_of(part)), left = std::ldexp(area, -round);
     return [=, this, drawn = double(drawn_pixels_)](double fraction) {
         told_ = std::max(told_, (drawn + area - left + 0.5 * left * fraction) / all);

@@ -7,24 +7,32 @@
 //   memory allows -> quarters, if a part needs more bricks than fit -> small parts in rounds: their rays wait at
 //   missing bricks, and resume when those have arrived (engine/passes/raycast.h)
 
+#include <algorithm>
 #include <functional>
+#include <optional>
 
 #include "engine/look/overlay.h"
 #include "engine/picture/renderer.h"
 
 namespace shvr {
 
+/// Rows [lower, upper) of a picture; without an upper row, all that follow.
+struct RowRange {
+    uint32_t lower = 0;
+    std::optional<uint32_t> upper{};
+};
+
 class PictureJob {
 public:
     /// Receives the next rows from the top, as wide as the picture.
     using TakeRows = std::function<void(ImageF rows)>;
     PictureJob(Renderer& renderer, const Session& session, const Camera& camera, const RenderOptions& options,
-               TakeRows take_rows);
+               TakeRows take_rows, const RowRange& rows = {});
     ~PictureJob();
     PictureJob(const PictureJob&) = delete;
     PictureJob& operator=(const PictureJob&) = delete;
 
-    bool is_done() const { return parts_.empty() && !rounds_ && band_end_ == size_.y; }
+    bool is_done() const { return parts_.empty() && !rounds_ && band_end_ == rows_end_; }
     /// Draws the next part. For a paged volume, waits for the part and for bricks: a part is drawn again until all
     /// bricks that its rays visit are on the device. A part that needs more bricks than fit is split into quarters, or
     /// drawn by rays that wait for bricks. For a resident volume on a GPU, waits only for the previous part, so that
@@ -35,8 +43,8 @@ public:
     void step(bool waits = true);
     /// Whether the last step left a part unfinished, because its bricks or its ambient light are not available yet.
     bool is_waiting() const { return rounds_.has_value(); }
-    /// The fraction of all pixels drawn so far.
-    double progress() const { return double(drawn_pixels_) / double(uint64_t(size_.x) * size_.y); }
+    /// The fraction of these rows' pixels drawn so far.
+    double progress() const { return double(drawn_pixels_) / double(std::max<uint64_t>(pixels(), 1)); }
     /// Whether all parts drawn so far are complete (Picture::complete).
     bool is_complete() const { return picture_.complete && !scene().occlusion_has_no_room() && rays_cut_short_ == 0; }
     /// Returns the picture without its image, whose rows were delivered. Call it after the last step.
@@ -72,6 +80,8 @@ private:
     bool renew_occlusion(const Progress& progress, bool waits);
     Progress progress_of(const PicturePart& part, int round);
     Scene& scene() const { return renderer_.scene(); }
+    /// Number of pixels in the rows to draw.
+    uint64_t pixels() const { return uint64_t(size_.x) * (rows_end_ - rows_begin_); }
     const Pane& pane() const { return panes_[pane_]; }
 
     Renderer& renderer_;
@@ -82,6 +92,7 @@ private:
     std::optional<VoxelBox> always_shown_;
     OverlayScene overlay_;
     std::vector<Pane> panes_;
+    uint32_t rows_begin_ = 0, rows_end_ = 0;  ///< rows of the picture to draw
     uint32_t band_rows_ = 1;
     uint32_t band_begin_ = 0, band_end_ = 0;  ///< rows of the picture
     ImageF band_;
