@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <utility>
 
 #include "engine/base/error.h"
 
@@ -26,9 +27,16 @@ FileDescriptor nameless_file(const std::filesystem::path& folder)
 
 }  // namespace
 
-RunFile::RunFile(const std::filesystem::path& folder, int64_t slices)
-    : folder_(folder.empty() ? "." : folder), file_(nameless_file(folder)), places_(size_t(slices))
+RunFile::RunFile(const std::filesystem::path& folder, int64_t lower, int64_t slices)
+    : folder_(folder.empty() ? "." : folder), file_(nameless_file(folder)), lower_(lower), places_(size_t(slices))
 {}
+
+RunFile::RunFile(const std::filesystem::path& file, int64_t lower, std::vector<Place> places)
+    : folder_(file), file_(::open(file.c_str(), O_RDONLY | O_CLOEXEC)), lower_(lower), places_(std::move(places))
+{
+    if (!file_) fail(file.string(), ": cannot be read: ", reason_of(errno));
+    for (const Place& place : places_) end_ = std::max<int64_t>(end_, place.offset);
+}
 
 void RunFile::write(int64_t z, const SliceRuns& slice)
 {
@@ -49,7 +57,7 @@ void RunFile::write(int64_t z, const SliceRuns& slice)
     const int64_t place = end_.fetch_add(int64_t(rows.size() + runs.size()));
     put(rows, place);
     put(runs, place + int64_t(rows.size()));
-    places_[size_t(z)] = {place, uint32_t(slice.rows.size())};
+    places_[size_t(z - lower_)] = {place, uint32_t(slice.rows.size())};
 }
 
 void RunFile::get(std::span<std::byte> bytes, int64_t at) const
@@ -68,7 +76,8 @@ void RunFile::get(std::span<std::byte> bytes, int64_t at) const
 void RunFile::read(int64_t z, int64_t lower, int64_t upper, SliceRuns& slice) const
 {
     slice.clear();
-    const Place& place = places_[size_t(z)];
+    if (z < lower_ || z >= lower_ + int64_t(places_.size())) return;
+    const Place& place = places_[size_t(z - lower_)];
     if (place.rows == 0) return;
     std::vector<SliceRuns::Row>& rows = slice.rows;
     rows.resize(place.rows);

@@ -44,24 +44,30 @@ struct SliceRuns {
 /// slices at once; each slice is written once, before it is read.
 class RunFile {
 public:
-    /// Creates the file in `folder`, for `slices` slices. Fails if no file can be created there.
-    RunFile(const std::filesystem::path& folder, int64_t slices);
-
-    void write(int64_t z, const SliceRuns& slice);
-    /// Reads rows [lower, upper) of a slice.
-    void read(int64_t z, int64_t lower, int64_t upper, SliceRuns& slice) const;
-    int64_t bytes() const { return end_; }
-
-private:
+    /// Where the rows of a slice are in the file; its runs follow them.
     struct Place {
         int64_t offset = 0;
         uint32_t rows = 0;  ///< 0: no runs
+        uint32_t unused = 0;
     };
+    /// Creates the file in `folder`, for `slices` slices from slice `lower` on. Fails if no file can be created there.
+    RunFile(const std::filesystem::path& folder, int64_t lower, int64_t slices);
+    /// Opens a file that another process has written, for reading.
+    RunFile(const std::filesystem::path& file, int64_t lower, std::vector<Place> places);
+
+    void write(int64_t z, const SliceRuns& slice);
+    /// Reads rows [lower, upper) of a slice; none where the file does not have the slice.
+    void read(int64_t z, int64_t lower, int64_t upper, SliceRuns& slice) const;
+    int64_t lower() const { return lower_; }  ///< first slice
+    int64_t bytes() const { return end_; }
+
+private:
     void get(std::span<std::byte> bytes, int64_t at) const;
 
     std::filesystem::path folder_;
     FileDescriptor file_;
-    std::vector<Place> places_;  ///< by slice
+    int64_t lower_ = 0;
+    std::vector<Place> places_;  ///< by slice, from `lower_` on
     std::atomic<int64_t> end_ = 0;
 };
 

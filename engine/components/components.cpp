@@ -11,142 +11,12 @@
 
 #include "engine/base/error.h"
 #include "engine/base/work_pool.h"
-#include "engine/components/bit_slab.h"
-#include "engine/components/component_runs.h"
-#include "engine/components/label_forest.h"
+#include "engine/components/component_part.h"
+#include "engine/components/labelled_range.h"
 #include "engine/volume/voxel_dispatch.h"
 
 namespace shvr {
 namespace {
-
-constexpr uint32_t NO_LABEL = std::numeric_limits<uint32_t>::max();
-/// Ranges per thread (several, to balance the load, as some ranges hold more runs), and a range's minimum thickness.
-constexpr int64_t RANGES_PER_THREAD = 4, THINNEST_RANGE = 16;
-/// Maximum size of a slice stored as bits: 2^33 voxels.
-constexpr int64_t MAX_SLICE_BYTES = int64_t{1} << 30;
-
-[[noreturn]] void refuse_labels()
-{
-    fail("the voxels at or above the threshold have more than 4294967295 provisional labels; expected fewer: a higher ",
-         "threshold, or a part of the volume");
-}
-
-/// Memory in use, and its maximum.
-class HeldBytes {
-public:
-    void change(int64_t bytes)
-    {
-        const int64_t now = now_.fetch_add(bytes) + bytes;
-        int64_t peak = peak_.load();
-        while (now > peak && !peak_.compare_exchange_weak(peak, now)) continue;
-    }
-    int64_t peak() const { return peak_; }
-
-private:
-    std::atomic<int64_t> now_ = 0, peak_ = 0;
-};
-
-/// Joins touching runs of two neighbouring rows; with `reach` 1, runs may also touch at an edge or a corner. A run of
-/// `row` without a label takes the label of the run it touches.
-void join_rows(std::span<LabelledRun> row, std::span<const LabelledRun> before, uint32_t reach, LabelForest& forest)
-{
-    auto first = before.begin();
-    for (LabelledRun& run : row) {
-        while (first != before.end() && first->end + reach <= run.begin) ++first;
-        for (auto other = first; other != before.end() && other->begin < run.end + reach; ++other) {
-            if (run.label == NO_LABEL)
-                run.label = other->label;
-            else if (run.label != other->label)
-                run.label = forest.join(run.label, other->label);
-        }
-    }
-}
-
-/// Joins a row with the row at the same y in the preceding slice and, for connectivity over corners, with the rows next
-/// to that one. `at` is a position in `before` that each call advances: callers set it to 0 for a slice's first row.
-void join_slices(std::span<LabelledRun> row, int64_t y, SliceRuns& before, size_t& at, Connectivity connectivity,
-                 LabelForest& forest)
-{
-    const uint32_t reach = connectivity == Connectivity::faces ? 0 : 1;
-    while (at < before.rows.size() && int64_t{before.rows[at].y} + reach < y) ++at;
-    for (size_t near = at; near < before.rows.size() && before.rows[near].y <= y + reach; ++near)
-        join_rows(row, before.runs_of(near), reach, forest);
-}
-
-/// A range of slices, labelled by one thread with its own set of labels.
-class LabelledRange {
-public:
-    LabelledRange(int64_t lower_slice, int64_t upper_slice) : lower_(lower_slice), upper_(upper_slice) {}
-
-    /// Labels the range. Adds finished words (BitSlab::words) to `words_done`. Stops early if `is_stopped` is set.
-    void label(BitSlab& slab, Connectivity connectivity, RunFile* file, HeldBytes& held,
-               std::atomic<int64_t>& words_done, const std::atomic<bool>& is_stopped)
-    {
-        int64_t done = lower_;  // first slice not done yet; skipped slices are empty
-        for (int64_t slab_bytes = slab.bytes(); !is_stopped && slab.read(done, upper_); slab_bytes = slab.bytes()) {
-            held.change(slab.bytes() - slab_bytes);
-            for (int64_t z = slab.lower(); z < slab.upper(); ++z) {
-                std::swap(before_, last);
-                if (z > done) before_.clear();
-                label_slice(slab, z, connectivity);
-                if (file != nullptr) file->write(z, last);
-                if (z == lower_) first = last;
-                count_held(held);
-                done = z + 1;
-            }
-            words_done += slab.words();
-        }
-        if (done < upper_) last = {};
-        before_ = {};
-        count_held(held);
-    }
-
-    SliceRuns first, last;  ///< first and last slice, still with this range's own labels
-    LabelForest forest;
-    int64_t foreground_voxels = 0;
-    int64_t lower_slice() const { return lower_; }
-
-private:
-    void label_slice(BitSlab& slab, int64_t z, Connectivity connectivity)
-    {
-        last.clear();
-        size_t at = 0;
-        slab.for_each_row(z, [&](int64_t y, std::span<const uint32_t> ends) {
-            for (size_t i = 0; i < ends.size(); i += 2) last.runs.push_back({ends[i], ends[i + 1], NO_LABEL});
-            last.rows.push_back({uint32_t(y), uint32_t(last.runs.size())});
-            label_row(at, connectivity);
-        });
-    }
-
-    /// Labels the last row of `last`.
-    void label_row(size_t& at, Connectivity connectivity)
-    {
-        const size_t index = last.rows.size() - 1;
-        const int64_t y = last.rows[index].y;
-        const std::span<LabelledRun> row = last.runs_of(index);
-        if (index > 0 && last.rows[index - 1].y + 1 == y)
-            join_rows(row, last.runs_of(index - 1), connectivity == Connectivity::faces ? 0 : 1, forest);
-        join_slices(row, y, before_, at, connectivity, forest);
-        if (forest.size() + row.size() >= LabelForest::MOST) refuse_labels();
-        for (LabelledRun& run : row) {
-            if (run.label == NO_LABEL) run.label = forest.add();
-            const auto voxels = int64_t(run.end - run.begin);
-            forest.voxels(run.label) += voxels;
-            foreground_voxels += voxels;
-        }
-    }
-
-    void count_held(HeldBytes& held)
-    {
-        const int64_t bytes = first.bytes() + last.bytes() + before_.bytes() + forest.bytes();
-        held.change(bytes - held_);
-        held_ = bytes;
-    }
-
-    int64_t lower_, upper_;
-    SliceRuns before_;
-    int64_t held_ = 0;
-};
 
 // ---- All ranges -----------------------------------------------------------------------------------------------------
 
@@ -155,8 +25,15 @@ struct LabelTable {
     LabelForest forest;                    ///< the parent of each provisional label is its final label
     std::vector<int64_t> lower;            ///< first slice of each range
     std::vector<uint32_t> bases;           ///< offset of each range's labels
-    std::optional<RunFile> runs{};         ///< all runs, with their ranges' own labels
+    std::deque<RunFile> runs{};            ///< all runs, with their ranges' own labels; ascending
     std::optional<StoredBlocks> stored{};  ///< blocks that can hold labels; null: all blocks
+
+    const RunFile& runs_of(int64_t z) const
+    {
+        size_t file = runs.size() - 1;
+        while (file > 0 && runs[file].lower() > z) --file;
+        return runs[file];
+    }
 };
 
 class LabelSource final : public VolumeSource {
@@ -172,7 +49,7 @@ public:
             SliceRuns slice;
             T* row = reinterpret_cast<T*>(voxels.data());
             for (int64_t z = box.lower.z; z < box.upper.z; ++z) {
-                table_->runs->read(z, box.lower.y, box.upper.y, slice);
+                table_->runs_of(z).read(z, box.lower.y, box.upper.y, slice);
                 const auto after = std::ranges::upper_bound(table_->lower, z);
                 const uint32_t base = table_->bases[size_t(after - table_->lower.begin()) - 1];
                 for (size_t i = 0; i < slice.rows.size(); ++i)
@@ -194,6 +71,9 @@ private:
     void fill_row(std::span<const LabelledRun> runs, uint32_t base, const VoxelBox& box, T* row) const
     {
         for (const LabelledRun& run : runs) {
+            // A piece of another process may be damaged.
+            if (uint64_t{base} + run.label >= table_->forest.size())
+                fail(info().name, ": a run has label ", run.label, "; expected one that its task has made");
             const int64_t begin = std::max<int64_t>(run.begin, box.lower.x);
             const int64_t end = std::min<int64_t>(run.end, box.upper.x);
             if (begin < end)
@@ -212,24 +92,36 @@ VoxelType type_for(int64_t labels)
 
 class Labelling final : public Components {
 public:
-    Labelling(const VolumeSource& source, const ComponentOptions& options)
-        : source_info_(source.info()), options_(options), table_(std::make_shared<LabelTable>())
+    Labelling(const VolumeSource& source, const ComponentOptions& options) : Labelling(source, options, nullptr)
     {
-        static_cast<void>(voxel_count(source.info()));
-        table_->stored = stored_above(source);
-        if (options.run_folder) table_->runs.emplace(*options.run_folder, source.info().size.z);
-        label_ranges(source);
-        join_ranges();
-        resolve();
-        number();
-        table_->forest.drop_counts();
-        ranges_.clear();
-        if (table_->runs) counts_.run_file_bytes = table_->runs->bytes();
+        if (options.run_folder) table_->runs.emplace_back(*options.run_folder, 0, source.info().size.z);
+        SlicesDone done = label_slices(source, options_, table_->stored, {0, source.info().size.z}, run_file());
+        counts_.peak_bytes = done.peak_bytes;
+        finish(done.ranges);
+    }
+    /// Joins what other processes labelled.
+    Labelling(const VolumeSource& source, const ComponentOptions& options, const std::vector<ComponentPart>& parts)
+        : Labelling(source, options, nullptr)
+    {
+        std::deque<LabelledRange> ranges;
+        int64_t next = 0;
+        for (const ComponentPart& part : parts) {
+            if (part.slices().lower != next)
+                fail(source.info().name, ": a part begins at slice ", part.slices().lower, "; expected ", next,
+                     ", where the one before it ends");
+            next = part.slices().upper;
+            std::deque<LabelledRange> read = part.read_ranges();
+            for (LabelledRange& range : read) ranges.push_back(std::move(range));
+            if (options.run_folder) part.add_runs(table_->runs);
+        }
+        if (next != source.info().size.z)
+            fail(source.info().name, ": the parts end at slice ", next, "; expected ", source.info().size.z);
+        finish(ranges);
     }
 
     std::unique_ptr<VolumeSource> labels() const override
     {
-        SHVR_CHECK(table_->runs.has_value(), "no folder for runs was given");
+        SHVR_CHECK(!table_->runs.empty(), "no folder for runs was given");
         VolumeInfo info = source_info_;
         info.type = type_for(counts_.kept);
         info.format = "components";
@@ -238,67 +130,30 @@ public:
     }
 
 private:
-    /// Returns the blocks of a sparse volume that can hold voxels at or above the threshold; null: all blocks.
-    std::optional<StoredBlocks> stored_above(const VolumeSource& source) const
+    Labelling(const VolumeSource& source, const ComponentOptions& options, std::nullptr_t)
+        : source_info_(source.info()), options_(options), table_(std::make_shared<LabelTable>())
     {
-        const Size3& size = source.info().size;
-        std::optional<StoredBlocks> stored = source.stored_blocks(0, MAX_STORED_BLOCKS);
-        if (stored && !(stored->fill >= options_.threshold)) {
-            stored->fill = 0.0;  // fill value of the volume of labels
-            return stored;
-        }
-        const int64_t bytes = words_of_row(size.x) * size.y * 8;
-        if (bytes > MAX_SLICE_BYTES && stored)
-            fail(source.info().name, ": holds ", stored->fill, " wherever nothing is stored, and the threshold is ",
-                 options_.threshold, "; expected one above that, or a volume whose slices have at most ",
-                 8 * MAX_SLICE_BYTES, " voxels");
-        if (bytes > MAX_SLICE_BYTES)
-            fail(source.info().name, ": a slice has ", size.x, " x ", size.y, " voxels; expected at most ",
-                 8 * MAX_SLICE_BYTES, " in all, or a part of the volume");
-        return std::nullopt;
+        static_cast<void>(voxel_count(source.info()));
+        table_->stored = stored_above(source, options.threshold);
     }
 
-    void label_ranges(const VolumeSource& source)
-    {
-        const Size3& size = source_info_.size;
-        const int threads =
-            options_.threads > 0 ? options_.threads : std::max(1, int(std::thread::hardware_concurrency()));
-        const ThresholdBits bits(source_info_.type, options_.threshold);
-        const BitLayout layout(size, table_->stored);
-        std::vector<BitSlab> slabs(size_t(threads), BitSlab(source, bits, layout));
-        // Each range consists of whole blocks, so that no block is decoded twice.
-        const int64_t block = std::min(source.block().z, size.z);
-        const int64_t wanted = threads == 1 ? 1 : threads * RANGES_PER_THREAD;
-        const int64_t thickness =
-            (std::max((size.z + wanted - 1) / wanted, THINNEST_RANGE) + block - 1) / block * block;
-        for (int64_t z = 0; z < size.z; z += thickness) ranges_.emplace_back(z, std::min(size.z, z + thickness));
+    RunFile* run_file() { return table_->runs.empty() ? nullptr : &table_->runs.front(); }
 
-        HeldBytes held;
-        std::atomic<int64_t> words_done = 0;
-        const auto words = double(std::max<int64_t>(layout.words(), 1));
-        std::atomic<bool> is_stopped = false;
-        WorkPool pool(threads, [&] {
-            try {
-                tell(options_.progress, double(words_done) / words);
-            } catch (...) {
-                is_stopped = true;  // makes the other threads stop soon; a range can take long
-                throw;
-            }
-        });
-        RunFile* const file = table_->runs ? &*table_->runs : nullptr;
-        pool.run(int64_t(ranges_.size()), [&](int64_t task, int worker) {
-            ranges_[size_t(task)].label(slabs[size_t(worker)], options_.connectivity, file, held, words_done,
-                                        is_stopped);
-        });
-        counts_.peak_bytes = held.peak();
+    void finish(std::deque<LabelledRange>& ranges)
+    {
+        join_ranges(ranges);
+        resolve();
+        number();
+        table_->forest.drop_counts();
+        for (const RunFile& runs : table_->runs) counts_.run_file_bytes += runs.bytes();
     }
 
     /// Merges the forests of all ranges, and joins the last slice of each range to the first slice of the next one.
-    void join_ranges()
+    void join_ranges(std::deque<LabelledRange>& ranges)
     {
         LabelForest& forest = table_->forest;
         SliceRuns before;
-        for (LabelledRange& range : ranges_) {
+        for (LabelledRange& range : ranges) {
             counts_.foreground_voxels += range.foreground_voxels;
             const uint64_t base = forest.append(std::move(range.forest));
             if (forest.size() > LabelForest::MOST) refuse_labels();
@@ -394,7 +249,6 @@ private:
     VolumeInfo source_info_;
     ComponentOptions options_;
     std::shared_ptr<LabelTable> table_;
-    std::deque<LabelledRange> ranges_;
 };
 
 }  // namespace
@@ -403,6 +257,12 @@ std::unique_ptr<Components> find_components(const VolumeSource& source, const Co
 {
     SHVR_CHECK(!std::isnan(options.threshold) && options.fewest_voxels >= 1 && options.max_components >= 0);
     return std::make_unique<Labelling>(source, options);
+}
+
+std::unique_ptr<Components> join_components(const VolumeSource& source, const ComponentOptions& options,
+                                            const std::vector<ComponentPart>& parts)
+{
+    return std::make_unique<Labelling>(source, options, parts);
 }
 
 }  // namespace shvr
