@@ -41,6 +41,18 @@ Size3 shard_counts(const ZarrVolume& volume)
     return (volume.counts() + along - int64_t{1}) / along;
 }
 
+void link_or_copy(const fs::path& file, const fs::path& target)
+{
+    std::error_code error;
+    fs::create_hard_link(file, target, error);
+    if (!error) return;
+    fs::create_directories(target.parent_path(), error);
+    fs::create_hard_link(file, target, error);
+    if (!error) return;
+    fs::copy_file(file, target, fs::copy_options::overwrite_existing, error);
+    if (error) fail(file.string(), ": cannot be copied to ", target.string(), ": ", error.message());
+}
+
 }  // namespace
 
 ImportChunks::ImportChunks(const std::filesystem::path& project, const VolumeInfo& info, int levels,
@@ -167,6 +179,24 @@ void ImportChunks::load(StateReader& state)
     state.take_all(bytes);
     bytes_ = bytes[0];
     for (Level& level : levels_) level.written = state.take_list<StoredChunk>();
+}
+
+void ImportChunks::merge(StateReader& state, const ImportChunks& from)
+{
+    std::vector<int64_t> bytes(1);
+    state.take_all(bytes);
+    bytes_ += bytes[0];
+    for (int number = 0; number < levels(); ++number) {
+        Level& level = levels_[size_t(number)];
+        const ZarrVolume& loose = from.of(number).loose;
+        for (const StoredChunk& chunk : state.take_list<StoredChunk>()) {
+            const Size3 counts = level.volume.counts();
+            if (int64_t(chunk.index) >= counts.x * counts.y * counts.z) state.refuse();
+            const Size3 position = position_of(int64_t(chunk.index), counts);
+            link_or_copy(loose.path_of(position), level.loose.path_of(position));
+            level.written.push_back(chunk);
+        }
+    }
 }
 
 }  // namespace shvr

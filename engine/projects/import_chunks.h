@@ -48,6 +48,9 @@ public:
     /// Call only while nothing is being written.
     void save(StateWriter& state) const;
     void load(StateReader& state);
+    /// Adds the chunks that another process has written, whose `save` made the state: links their files, or copies them
+    /// where the file system has no links.
+    void merge(StateReader& state, const ImportChunks& from);
 
 private:
     struct Level {

@@ -10,6 +10,7 @@
 
 #include "engine/base/work_pool.h"
 #include "engine/formats/zarr/project.h"
+#include "engine/pieces/task_choice.h"
 #include "engine/projects/import_chunks.h"
 #include "engine/projects/import_prepare.h"
 #include "engine/projects/levels/import_pyramid.h"
@@ -45,7 +46,22 @@ public:
 
     virtual void save(StateWriter& state) const = 0;
     virtual void load(StateReader& state) = 0;
+
+    // ---- Passes of several processes (import_piece.h); only a dense pass can be split ----
+    /// Saves what another pass needs to continue from this one's slabs.
+    virtual void save_piece(StateWriter&) const { SHVR_CHECK(false, "a sparse pass is not split"); }
+    /// Takes the slabs of another process, in any order.
+    virtual void merge_piece(StateReader&) { SHVR_CHECK(false, "a sparse pass is not split"); }
+    /// Makes the chunks of coarser levels that lie in the slabs of several processes, once all are merged.
+    virtual void finish_pieces() { SHVR_CHECK(false, "a sparse pass is not split"); }
 };
+
+/// Slabs [lower, upper) of 64 slices, of a pass by one of several processes.
+struct SlabRange {
+    int64_t lower = 0, upper = 0;
+};
+/// Returns the slabs of a task. They begin where layers of coarser levels do, as far as that balances the tasks.
+SlabRange slabs_of(const TaskChoice& task, const Size3& size);
 
 struct ImportSetup {
     const VolumeInfo& info;  ///< describes the result
@@ -54,6 +70,7 @@ struct ImportSetup {
     int threads = 1;
     ImportChunks& chunks;  ///< made for `threads` + 1 workers
     WorkPool& pool;
+    std::optional<SlabRange> slabs{};  ///< slabs of a dense pass; null: all
 };
 
 std::unique_ptr<ImportPass> make_dense_pass(Preparation& preparation, const ImportSetup& setup);

@@ -6,8 +6,8 @@
 #include <atomic>
 
 #include "engine/projects/import_pass.h"
-#include "engine/projects/import_tally.h"
 #include "engine/projects/levels/import_cube.h"
+#include "engine/projects/levels/import_tally.h"
 #include "engine/projects/levels/sparse_ranges.h"
 #include "engine/volume/voxel_dispatch.h"
 

@@ -15,6 +15,7 @@
 #include "engine/projects/import_chunks.h"
 #include "engine/projects/import_files.h"
 #include "engine/projects/import_pass.h"
+#include "engine/projects/import_piece.h"
 #include "engine/projects/import_plan.h"
 #include "engine/projects/import_sparse.h"
 #include "engine/projects/part_folder.h"
@@ -58,8 +59,10 @@ const char* use_of_part(const ImportOptions& options)
 }
 
 /// For a signal that ends the program while the folder cannot be removed.
-std::string remains_in_words(const fs::path& part, const ImportOptions& options)
+std::string remains_in_words(const fs::path& part, const ImportOptions& options, bool is_piece, bool joins)
 {
+    if (is_piece) return sentence(part.string(), " keeps what the task has done: the same task goes on from there");
+    if (joins) return sentence(part.string(), " is left: the same command replaces it, rm -r removes it");
     return sentence(part.string(),
                     options.label_image ? " is left: " : " keeps what the import has done: ", use_of_part(options));
 }
@@ -76,8 +79,9 @@ public:
         };
     }
 
+    /// `task`: for one of several processes, whose piece is `project`.
     Import(const VolumeSource& source, const fs::path& origin, const fs::path& project, const ImportOptions& options,
-           const ImportPlan& plan)
+           const ImportPlan& plan, const std::optional<TaskChoice>& task = {}, bool joins = false)
         : source_(source),
           origin_(whole_path(origin)),
           options_(options),
@@ -87,8 +91,10 @@ public:
           identity_(options.label_image
                         ? std::string()
                         : import_identity(source, origin_, options, plan.stored ? "stored chunks" : "all voxels")),
-          folder_(project, options.overwrites),
-          unfinished_(std::in_place, remains_in_words(folder_.path(), options)),
+          task_(task),
+          joins_(joins),
+          folder_(project, options.overwrites && !task),
+          unfinished_(std::in_place, remains_in_words(folder_.path(), options, task.has_value(), joins)),
           threads_(import_threads(options.threads)),
           pool_(
               threads_, [this] { poll(); }, [this] { stop_where_asked(); })
@@ -105,7 +111,55 @@ public:
         write_level_metadata();
         begin_ = Clock::now();
         done_at_start_ = pass_->done();
+        run_pass();
+        return finished();
+    }
+
+    /// Leaves the piece of the task.
+    void make_piece()
+    {
+        begin_ = Clock::now();
+        done_at_start_ = pass_->done();
+        StateWriter state;
+        state.put(identity_);
+        if (!plan_.stored) {
+            run_pass();
+            pass_->save_piece(state);
+            chunks_->save(state);
+        }
+        state.write(folder_.path() / PIECE_STATE);
+        folder_.finish();
+        unfinished_.reset();
+    }
+
+    ImportReport join(const std::vector<fs::path>& pieces)
+    {
+        write_level_metadata();
+        begin_ = Clock::now();
+        for (const fs::path& piece : pieces) {
+            stop_where_asked();
+            StateReader state(piece / PIECE_STATE);
+            if (state.take_text() != identity_)
+                fail(piece.string(),
+                     ": was imported from another file or with other options; expected the same in all "
+                     "tasks: remove it, and run its task again");
+            pass_->merge_piece(state);
+            chunks_->merge(state, chunks_in(piece));
+        }
+        pass_->finish_pieces();
+        return finished();
+    }
+
+private:
+    static constexpr const char* PIECE_STATE = "piece.state";
+
+    void run_pass()
+    {
         pass_->run({.is_due = [this] { return is_state_due(); }, .keep = [this] { keep_state(); }});
+    }
+
+    ImportReport finished()
+    {
         chunks_->finish();
         pack_shards();
         write_attributes();
@@ -114,28 +168,33 @@ public:
         return report_;
     }
 
-private:
+    ImportChunks chunks_in(const fs::path& folder) const
+    {
+        return ImportChunks(folder, info_, level_count(info_.size), version(), options_.compressor, options_.has_shards,
+                            threads_ + 1, plan_.fill);
+    }
+
     // ---- State kept between runs ----
 
     void begin_anew()
     {
-        const int levels = level_count(info_.size);
         pass_.reset();
-        chunks_ = std::make_unique<ImportChunks>(folder_.path(), info_, levels, version(), options_.compressor,
-                                                 options_.has_shards, threads_ + 1, plan_.fill);
+        chunks_ = std::make_unique<ImportChunks>(folder_.path(), info_, level_count(info_.size), version(),
+                                                 options_.compressor, options_.has_shards, threads_ + 1, plan_.fill);
         const ImportSetup setup{.info = info_,
                                 .halving = options_.halving,
                                 .fill = plan_.fill,
                                 .threads = threads_,
                                 .chunks = *chunks_,
-                                .pool = pool_};
+                                .pool = pool_,
+                                .slabs = task_ ? std::optional(slabs_of(*task_, info_.size)) : std::nullopt};
         const Size3 first = options_.preparation.crop ? options_.preparation.crop->lower : Size3(0);
         pass_ = plan_.stored ? make_sparse_pass(source_, first, *plan_.stored, setup)
                              : make_dense_pass(*preparation_, setup);
     }
 
     /// Label images are never resumed, since no file would show that their source has changed in between.
-    bool is_resumable() const { return !options_.label_image && options_.gaps == nullptr; }
+    bool is_resumable() const { return !options_.label_image && options_.gaps == nullptr && !joins_; }
     bool is_state_due() const
     {
         return is_resumable() && seconds_since(state_written_) >= STATE_INTERVAL * state_seconds_;
@@ -153,7 +212,7 @@ private:
     void write_state()
     {
         StateWriter state;
-        state.put(identity_);
+        state.put(joins_ ? "joining " + identity_ : identity_);
         pass_->save(state);
         chunks_->save(state);
         state.write(folder_.state());
@@ -311,6 +370,8 @@ private:
     std::unique_ptr<Preparation> preparation_;
     VolumeInfo info_;
     std::string identity_;
+    std::optional<TaskChoice> task_;
+    bool joins_;         ///< makes the project from pieces
     PartFolder folder_;  ///< declared last, so that no folder is made if constructing another member fails
     std::optional<UnfinishedWork> unfinished_;
     int threads_;
@@ -373,6 +434,41 @@ ImportReport import_volume(const VolumeSource& source, const fs::path& origin, c
         throw ImportStopped(sentence(job.folder().string(), ": the import was stopped; what is done is kept", goes_on));
     } catch (const Error& error) {
         fail(error.what(), "; what is done is kept in ", part.string(), goes_on);
+    }
+}
+
+void import_piece(const VolumeSource& source, const fs::path& origin, const fs::path& piece,
+                  const ImportOptions& options, const TaskChoice& task)
+{
+    SHVR_CHECK(options.gaps == nullptr && !options.label_image);
+    if (options.halving == Halving::label) check_labels(source.info(), options.preparation);
+    const ImportPlan plan = plan_import(source, piece, options);
+    Import job(source, origin, piece, options, plan, task);
+    const fs::path part = job.folder();
+    try {
+        job.make_piece();
+    } catch (const ImportStopped&) {
+        throw ImportStopped(sentence(part.string(), ": the task was stopped; what is done is kept, and the same task ",
+                                     "goes on from there"));
+    } catch (const Error& error) {
+        fail(error.what(), "; what is done is kept in ", part.string(), ", and the same task goes on from there");
+    }
+}
+
+ImportReport join_import(const VolumeSource& source, const fs::path& origin, const fs::path& project,
+                         const ImportOptions& options, const std::vector<fs::path>& pieces)
+{
+    const ImportPlan plan = plan_import(source, project, options);
+    if (plan.stored) return import_volume(source, origin, project, options);
+    Import job(source, origin, project, options, plan, {}, true);
+    try {
+        return job.join(pieces);
+    } catch (const ImportStopped&) {
+        job.abandon();
+        throw ImportStopped(sentence(project.string(), ": joining was stopped; the pieces are as they were"));
+    } catch (...) {
+        job.abandon();
+        throw;
     }
 }
 

@@ -34,6 +34,9 @@ struct Window {
         return size_t(x + size.x * (y + size.y * (is_whole ? z : z % IMPORT_CHUNK)));
     }
 
+    /// Number of voxels in a slice.
+    size_t slice() const { return size_t(size.x * size.y); }
+
     Size3 size;
     bool is_whole;
     bool keeps_ranges;  ///< whether ranges are kept, since this level is the base of the next six
@@ -99,6 +102,45 @@ public:
     {
         Window<T>& window = windows_[size_t(level - 1)];
         std::fill(window.values.begin(), window.values.end(), T{});
+    }
+
+    std::vector<std::byte> slices(int level, int64_t lower, int64_t upper) const override
+    {
+        const Window<T>& window = window_of(level);
+        std::vector<std::byte> bytes;
+        for (const std::vector<T>* values : {&window.values, &window.lower, &window.upper})
+            for (int64_t z = lower; z < upper && !values->empty(); ++z) {
+                const auto slice = std::as_bytes(std::span(*values).subspan(window.at(0, 0, z), window.slice()));
+                bytes.insert(bytes.end(), slice.begin(), slice.end());
+            }
+        return bytes;
+    }
+
+    bool put_slices(int level, int64_t lower, int64_t upper, std::span<const std::byte> slices) override
+    {
+        Window<T>& window = windows_[size_t(level - 1)];
+        const size_t slice_bytes = window.slice() * sizeof(T), arrays = window.keeps_ranges ? 3 : 1;
+        if (lower < 0 || upper > window.size.z || slices.size() != arrays * size_t(upper - lower) * slice_bytes)
+            return false;
+        for (std::vector<T>* values : {&window.values, &window.lower, &window.upper})
+            for (int64_t z = lower; z < upper && !values->empty(); ++z) {
+                std::memcpy(values->data() + window.at(0, 0, z), slices.data(), slice_bytes);
+                slices = slices.subspan(slice_bytes);
+            }
+        return true;
+    }
+
+    bool include_ranges(int level, std::span<const std::byte> ranges) override
+    {
+        std::vector<ImportRange<T>>& known = tables_[size_t(level)]->ranges();
+        if (ranges.size() != known.size() * sizeof(ImportRange<T>)) return false;
+        for (ImportRange<T>& range : known) {
+            ImportRange<T> other;
+            std::memcpy(&other, ranges.data(), sizeof other);
+            range.include(other);
+            ranges = ranges.subspan(sizeof other);
+        }
+        return true;
     }
 
     std::vector<std::byte> ranges(int level) const override

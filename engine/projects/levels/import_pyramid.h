@@ -56,6 +56,16 @@ public:
     /// Call this once the layer of `level` has been written. The next layer reuses its memory.
     virtual void clear_layer(int level) = 0;
 
+    // ---- Slices that several processes make ----
+    /// Copies slices [lower, upper) of a level from the memory of its layers: the voxels and, of the sixth level, the
+    /// ranges below them.
+    virtual std::vector<std::byte> slices(int level, int64_t lower, int64_t upper) const = 0;
+    /// Puts such slices back; returns false if they have another size.
+    virtual bool put_slices(int level, int64_t lower, int64_t upper, std::span<const std::byte> slices) = 0;
+    /// Extends each range by the range in `ranges`, in the form of the next function; returns false if there are not as
+    /// many.
+    virtual bool include_ranges(int level, std::span<const std::byte> ranges) = 0;
+
     /// The elements of PROJECT/shvr/ranges-LEVEL.
     virtual std::vector<std::byte> ranges(int level) const = 0;
 

@@ -26,6 +26,8 @@ public:
     std::optional<VolumeStatistics> statistics() const;
     void save(StateWriter& state) const { state.put_all(total()); }
     void load(StateReader& state) { state.take_all(counts_[0]); }
+    /// Adds the counts of another process.
+    void merge(StateReader& state);
 
 private:
     std::vector<int64_t> total() const;
@@ -51,6 +53,8 @@ public:
     /// Call this only when no slice is partly added.
     void save(StateWriter& state) const;
     void load(StateReader& state);
+    /// Adds what another process collected about slices [lower, upper).
+    void merge(StateReader& state, int64_t lower, int64_t upper);
 
 private:
     SliceHasher& hasher_of(int64_t slice);

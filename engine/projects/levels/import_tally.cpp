@@ -1,5 +1,6 @@
-#include "engine/projects/import_tally.h"
+#include "engine/projects/levels/import_tally.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace shvr {
@@ -41,6 +42,13 @@ void ValueCounts::add(Bytes voxel, int64_t times, int worker)
     uint16_t bits = 0;
     std::memcpy(&bits, voxel.data(), bytes_of(type_));
     counts_[size_t(worker)][bits] += times;
+}
+
+void ValueCounts::merge(StateReader& state)
+{
+    std::vector<int64_t> added(counts_[0].size());
+    state.take_all(added);
+    for (size_t value = 0; value < added.size(); ++value) counts_[0][value] += added[value];
 }
 
 std::vector<int64_t> ValueCounts::total() const
@@ -102,6 +110,14 @@ void ImportTally::load(StateReader& state)
 {
     state.take_all(hashes_);
     counts_.load(state);
+}
+
+void ImportTally::merge(StateReader& state, int64_t lower, int64_t upper)
+{
+    std::vector<SliceHash> hashes(hashes_.size());
+    state.take_all(hashes);
+    std::copy(hashes.begin() + lower, hashes.begin() + upper, hashes_.begin() + lower);
+    counts_.merge(state);
 }
 
 }  // namespace shvr
