@@ -7,7 +7,9 @@
 #include "engine/annotation/files/stated_content.h"
 #include "engine/annotation/writers/hold.h"
 #include "engine/base/text.h"
+#include "engine/projects/import_piece.h"
 #include "engine/remote/address.h"
+#include "engine/tasks/task_parts.h"
 #include "engine/volume/grid.h"
 #include "engine/volume/unit.h"
 
@@ -185,50 +187,103 @@ void check(const ImportTask& task)
         throw UsageError(sentence("no ", name(task.volume.empty() ? "volume" : "project"), " is given; expected both"));
 }
 
-ImportResult run(const ImportTask& task, ProgressReporter& reporter)
+namespace {
+
+/// Keeps other processes from writing annotation into a project that is to be replaced, since that deletes it.
+std::shared_ptr<Hold> hold_replaced(const ImportTask& task)
 {
-    using Clock = std::chrono::steady_clock;
-    check(task);
-    // Replacing a project also deletes its annotation, so no other process may be writing annotation there.
+    if (!task.overwrite) return nullptr;
     const std::filesystem::path session = task.project / "shvr" / "session.json";
-    const std::shared_ptr<Hold> hold = task.overwrite ? Hold::take(journal_beside(session), task.program) : nullptr;
+    std::shared_ptr<Hold> hold = Hold::take(journal_beside(session), task.program);
     if (hold && !hold->doubtful().empty())
         throw JournalTaken(sentence(hold->journal().string(), ": is open for writing in ",
                                     in_words(hold->doubtful().front()),
                                     "; expected no writer of a project that is to be replaced"));
+    return hold;
+}
+
+ImportOptions options_of(const ImportTask& task, ImportListener& listener, ProgressReporter& reporter, Gaps* gaps)
+{
+    return {.preparation = {.crop = task.crop,
+                            .reverse = task.reverse,
+                            .blur_sigma_voxels = task.blur_voxels,
+                            .downscale = task.downscale},
+            .halving = task.labels ? Halving::label : Halving::mean,
+            .choice = sentence(task.choice.channel, "\n", task.choice.frame, "\n", task.raw,
+                               task.choice.level > 0 ? sentence("\nlevel ", task.choice.level) : "",
+                               task.allows_incomplete ? "\nincomplete" : ""),
+            .overwrites = task.overwrite,
+            .threads = task.threads,
+            .budget_host_bytes = task.budget_host_mib << 20,
+            .version = task.version,
+            .has_shards = task.shards,
+            .progress = [&](const ImportProgress& progress) { listener.take(progress); },
+            .cancel = &reporter.stop_requested(),
+            .gaps = task.allows_incomplete ? gaps : nullptr};
+}
+
+/// Opens the source of a task and calls `import`, which makes a report.
+template <class Run>
+ImportResult timed(const ImportTask& task, ProgressReporter& reporter, const Run& import)
+{
+    using Clock = std::chrono::steady_clock;
     if (task.overwrite) refuse_own_source(task);
     const Clock::time_point begin = Clock::now();
     const std::unique_ptr<VolumeSource> source = open_as_told(task);
     Gaps gaps = gaps_of(task.allows_incomplete, task.names);
     const GapSource readable(*source, gaps);
     ImportListener listener(task, source->info().type, reporter);
-    const ImportOptions wanted{.preparation = {.crop = task.crop,
-                                               .reverse = task.reverse,
-                                               .blur_sigma_voxels = task.blur_voxels,
-                                               .downscale = task.downscale},
-                               .halving = task.labels ? Halving::label : Halving::mean,
-                               .choice = sentence(task.choice.channel, "\n", task.choice.frame, "\n", task.raw,
-                                                  task.choice.level > 0 ? sentence("\nlevel ", task.choice.level) : "",
-                                                  task.allows_incomplete ? "\nincomplete" : ""),
-                               .overwrites = task.overwrite,
-                               .threads = task.threads,
-                               .budget_host_bytes = task.budget_host_mib << 20,
-                               .version = task.version,
-                               .has_shards = task.shards,
-                               .progress = [&](const ImportProgress& progress) { listener.take(progress); },
-                               .cancel = &reporter.stop_requested(),
-                               .gaps = task.allows_incomplete ? &gaps : nullptr};
     ImportResult result;
     try {
-        result.report = import_volume(readable, task.volume, task.project, wanted);
+        result.report = import(readable, options_of(task, listener, reporter, &gaps));
     } catch (const ImportStopped& stopped) {
         throw Stopped(stopped.what());
     }
     result.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
-    warn_of_labels(task, gaps, result.report);
+    if (!result.report.project.empty()) warn_of_labels(task, gaps, result.report);  // a piece is no project
     const VolumeInfo& info = result.report.info;
     result.megabytes_per_second = double(voxel_count(info)) * double(bytes_of(info.type)) / result.seconds / 1e6;
     return result;
+}
+
+}  // namespace
+
+ImportResult run(const ImportTask& task, ProgressReporter& reporter)
+{
+    check(task);
+    const std::shared_ptr<Hold> hold = hold_replaced(task);
+    return timed(task, reporter, [&](const VolumeSource& source, const ImportOptions& options) {
+        return import_volume(source, task.volume, task.project, options);
+    });
+}
+
+void check_part(const ImportTask& task)
+{
+    check(task);
+    if (task.allows_incomplete)
+        throw UsageError(sentence(option_name(task.names, "allow_incomplete"),
+                                  " is given for one of several tasks; expected an import by one process, which lists "
+                                  "all that it could not read"));
+}
+
+void run_part(const ImportTask& task, const TaskChoice& choice, const std::filesystem::path& piece,
+              ProgressReporter& reporter)
+{
+    check_part(task);
+    static_cast<void>(timed(task, reporter, [&](const VolumeSource& source, const ImportOptions& options) {
+        import_piece(source, task.volume, piece, options, choice);
+        return ImportReport{.info = source.info()};
+    }));
+}
+
+ImportResult join_parts(const ImportTask& task, const std::vector<std::filesystem::path>& pieces,
+                        ProgressReporter& reporter)
+{
+    check_part(task);
+    const std::shared_ptr<Hold> hold = hold_replaced(task);
+    return timed(task, reporter, [&](const VolumeSource& source, const ImportOptions& options) {
+        return join_import(source, task.volume, task.project, options, pieces);
+    });
 }
 
 }  // namespace shvr

@@ -5,8 +5,10 @@
 
 #include "engine/base/atomic_writer.h"
 #include "engine/base/text.h"
+#include "engine/components/component_part.h"
 #include "engine/formats/export/volume_export.h"
 #include "engine/tasks/task_output.h"
+#include "engine/tasks/task_parts.h"
 
 namespace shvr {
 
@@ -78,6 +80,40 @@ void write_labels(const LabelTask& task, const VolumeSource& labels, ProgressRep
     }
 }
 
+LabelTask resolved(LabelTask task)
+{
+    if (!task.output.empty()) task.output = written_path(task.output);
+    return task;
+}
+
+ComponentOptions wanted_of(const LabelTask& task, const Progress& progress)
+{
+    ComponentOptions wanted{
+        .threshold = task.threshold,
+        .connectivity = task.connectivity,
+        .fewest_voxels = task.fewest_voxels,
+        .max_components = task.largest,
+        .threads = task.threads,
+        .progress = progress,
+    };
+    if (!task.output.empty()) wanted.run_folder = folder_of(task.output);
+    return wanted;
+}
+
+/// Writes the labels, if they are wanted.
+void write_result(const LabelTask& task, const Components& components, LabelResult& result, ProgressReporter& reporter)
+{
+    if (task.output.empty()) return;
+    const std::unique_ptr<VolumeSource> labels = components.labels();
+    result.type = labels->info().type;
+    write_labels(task, *labels, reporter);
+}
+
+std::string warning_of(const std::string& name, const std::string& gaps)
+{
+    return sentence(name, ": ", gaps, " and count as below the threshold");
+}
+
 }  // namespace
 
 void fields(Fields& f, LabelTask& task)
@@ -140,29 +176,57 @@ void check(const LabelTask& task, const VolumeSource& source, const fs::path& vo
 LabelResult run(const LabelTask& asked, const VolumeSource& source, const std::string& name, ProgressReporter& reporter)
 {
     check(asked, source, {});
-    LabelTask task = asked;
-    if (!task.output.empty()) task.output = written_path(task.output);
+    const LabelTask task = resolved(asked);
     const Clock::time_point begin = Clock::now();
-    ComponentOptions wanted{
-        .threshold = task.threshold,
-        .connectivity = task.connectivity,
-        .fewest_voxels = task.fewest_voxels,
-        .max_components = task.largest,
-        .threads = task.threads,
-        .progress = reporter.begin("labelling " + name),
-    };
-    if (!task.output.empty()) wanted.run_folder = folder_of(task.output);
     Gaps gaps = gaps_of(task.allows_incomplete, task.names);
-    const std::unique_ptr<Components> components = find_components(GapSource(source, gaps), wanted);
+    const std::unique_ptr<Components> components =
+        find_components(GapSource(source, gaps), wanted_of(task, reporter.begin("labelling " + name)));
     LabelResult result{.counts = components->counts(), .label_seconds = seconds_since(begin)};
-    if (!task.output.empty()) {
-        const std::unique_ptr<VolumeSource> labels = components->labels();
-        result.type = labels->info().type;
-        write_labels(task, *labels, reporter);
-    }
+    write_result(task, *components, result, reporter);
     result.voxels_not_read = gaps.voxels();
-    if (!gaps.empty())
-        result.warnings.push_back(sentence(name, ": ", gaps.in_words(), " and count as below the threshold"));
+    if (!gaps.empty()) result.warnings.push_back(warning_of(name, gaps.in_words()));
+    result.seconds = seconds_since(begin);
+    return result;
+}
+
+void run_part(const LabelTask& asked, const VolumeSource& source, const std::string& name, const TaskChoice& choice,
+              const fs::path& piece, ProgressReporter& reporter)
+{
+    check(asked, source, {});
+    const LabelTask task = resolved(asked);
+    Gaps gaps = gaps_of(task.allows_incomplete, task.names);
+    ComponentOptions wanted = wanted_of(task, reporter.begin("labelling " + name + ", part " + choice.in_words()));
+    if (wanted.run_folder) wanted.run_folder = piece.parent_path();
+    const Size3& size = source.info().size;
+    const int64_t block = std::clamp<int64_t>(source.block().z, 1, size.z);
+    const TaskChoice::Range blocks = choice.range_of((size.z + block - 1) / block);
+    write_component_part(GapSource(source, gaps), wanted,
+                         {std::min(blocks.lower * block, size.z), std::min(blocks.upper * block, size.z)}, piece,
+                         [&] { return gaps.empty() ? "" : sentence(gaps.voxels(), ' ', gaps.in_words()); });
+}
+
+LabelResult join_parts(const LabelTask& asked, const VolumeSource& source, const std::string& name,
+                       const std::vector<fs::path>& pieces, ProgressReporter& reporter)
+{
+    check(asked, source, {});
+    const LabelTask task = resolved(asked);
+    const Clock::time_point begin = Clock::now();
+    const Progress progress = reporter.begin("joining the parts of " + name);
+    std::vector<ComponentPart> parts;
+    for (const fs::path& piece : pieces) {
+        tell(progress, double(parts.size()) / double(pieces.size()));
+        parts.emplace_back(piece, source.info().size);
+    }
+    const std::unique_ptr<Components> components = join_components(source, wanted_of(task, progress), parts);
+    LabelResult result{.counts = components->counts(), .label_seconds = seconds_since(begin)};
+    write_result(task, *components, result, reporter);
+    for (const ComponentPart& part : parts) {
+        const std::string& note = part.note();  // "VOXELS WORDS"
+        const size_t space = std::min(note.find(' '), note.size());
+        if (note.empty()) continue;
+        result.voxels_not_read += whole_of(std::string_view(note).substr(0, space)).value_or(0);
+        result.warnings.push_back(warning_of(name, note.substr(std::min(space + 1, note.size()))));
+    }
     result.seconds = seconds_since(begin);
     return result;
 }
