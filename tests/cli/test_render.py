@@ -262,7 +262,7 @@ class Render(CliTest):
     def test_a_signal_right_after_a_file_is_created_leaves_nothing(self):
         session = self.write_session(volume={"procedural": "tubes", "size": [16, 16, 16], "seed": 3})
         result = run("render", session, "-o", self.folder / "a.png", "--size", "16x16", environment={
-            "LD_PRELOAD": str(STOP_IN_SAVE), "SHVR_STOP_AT_CREATE": "1", "SHVR_STOP_SIGNAL": str(int(signal.SIGPIPE)),
+            "LD_PRELOAD": str(STOP_IN_SAVE), "SHVR_STOP_AT_CREATE": "/.shvr-", "SHVR_STOP_SIGNAL": str(int(signal.SIGPIPE)),
             "XDG_CACHE_HOME": str(self.folder / "cache"), "ASAN_OPTIONS": "verify_asan_link_order=0"})
         self.assertEqual(result.returncode, -signal.SIGPIPE, result.stderr)
         left = [path for path in self.folder.rglob("*") if path.name.startswith(".shvr-") or path.name == "a.png"]

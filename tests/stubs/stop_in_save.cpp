@@ -1,7 +1,7 @@
 // Ctrl-C in the middle of a save: preloaded before the C library, it sends the signal SHVR_STOP_SIGNAL to the main
 // thread at the first write of another thread into a file of a folder `stopped`. That write returns only when the main
 // thread, which waits for the save meanwhile, has gone to sleep often enough to have seen the signal.
-// With SHVR_STOP_AT_CREATE it sends the signal as soon as the first temporary file (.shvr-...) exists instead.
+// With SHVR_STOP_AT_CREATE it sends the signal as soon as the first new file exists whose path contains this text.
 
 #include <atomic>
 #include <cstdarg>
@@ -65,9 +65,9 @@ int open(const char* path, int flags, ...)
     va_end(arguments);
     const int file = next<int(const char*, int, ...)>("open")(path, flags, mode);
     const char* const number = std::getenv("SHVR_STOP_SIGNAL");
-    const bool is_meant = file >= 0 && (flags & O_CREAT) && std::getenv("SHVR_STOP_AT_CREATE") && number;
-    if (is_meant && std::strstr(path, "/.shvr-") && !is_sent.exchange(true))
-        syscall(SYS_tgkill, getpid(), syscall(SYS_gettid), std::atoi(number));
+    const char* const wanted = std::getenv("SHVR_STOP_AT_CREATE");
+    const bool is_meant = file >= 0 && (flags & O_CREAT) && wanted && number && std::strstr(path, wanted);
+    if (is_meant && !is_sent.exchange(true)) syscall(SYS_tgkill, getpid(), syscall(SYS_gettid), std::atoi(number));
     return file;
 }
 
