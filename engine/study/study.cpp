@@ -6,7 +6,6 @@
 #include <map>
 #include <mutex>
 #include <set>
-#include <thread>
 
 #include "engine/annotation/files/mask_file.h"
 #include "engine/annotation/measures/trace_score.h"
@@ -14,6 +13,7 @@
 #include "engine/base/atomic_file.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/base/machine/machine.h"
 #include "engine/base/text.h"
 #include "engine/base/work_pool.h"
 
@@ -121,9 +121,10 @@ public:
 
     StudyResults make()
     {
-        const int cores = std::max(int(std::thread::hardware_concurrency()), 1);
-        WorkPool pool(run_.threads > 0 ? run_.threads : cores, [&] { tell(run_.progress, share_done()); });
+        WorkPool pool(run_.threads > 0 ? run_.threads : processors_allowed(),
+                      [&] { tell(run_.progress, share_done()); });
         pool.run(int64_t(pieces_.size()), [&](int64_t piece, int) { make(pieces_[size_t(piece)]); });
+        if (run_.of == 1) write_rows();  // also if parts have made all of them
         return results();
     }
 
@@ -164,7 +165,10 @@ private:
                 const std::string stem = file_stem(plan_.items[i]);
                 if (name != stem + ".csv" && !name.starts_with(stem + "-part-")) continue;
                 for (const StudyRow& row : rows)
-                    if (is_row_of(plan_.items[i], row)) rows_[i] = row;
+                    if (is_row_of(plan_.items[i], row)) {
+                        rows_[i] = row;
+                        if (name == stem + suffix() + ".csv") own_items_.insert(i);
+                    }
             }
         }
     }
@@ -174,7 +178,10 @@ private:
         const std::vector<StudyRepeat> repeats = read_study_repeats(file);
         for (size_t i = 0; i < plan_.pairs.size(); ++i)
             for (const StudyRepeat& repeat : repeats)
-                if (is_repeat_of(plan_.pairs[i], repeat)) repeats_[i] = repeat;
+                if (is_repeat_of(plan_.pairs[i], repeat)) {
+                    repeats_[i] = repeat;
+                    if (file.filename() == "repeats" + suffix() + ".csv") own_pairs_.insert(i);
+                }
     }
 
     /// Groups the unfinished items of the plan into pieces, one per phantom, and keeps the pieces of this part.
@@ -203,7 +210,7 @@ private:
     double share_done()
     {
         const std::lock_guard lock(mutex_);
-        return to_make_ > 0 ? double(made_ + made_pairs_.size()) / double(to_make_) : 1.0;
+        return to_make_ > 0 ? double(made_ + made_pairs_) / double(to_make_) : 1.0;
     }
 
     void make(const Piece& piece)
@@ -217,34 +224,39 @@ private:
             if (run_.keeps_annotations) save_annotation(run_.folder / annotation_path(item), scene, made);
             const std::lock_guard lock(mutex_);
             rows_[i] = made.row;
-            made_items_.insert(i);
+            own_items_.insert(i);
             ++made_;
         }
         for (const size_t i : piece.pairs) {
             const StudyRepeat repeat = repeat_of(scene, plan_.pairs[i]);
             const std::lock_guard lock(mutex_);
             repeats_[i] = repeat;
-            made_pairs_.insert(i);
+            own_pairs_.insert(i);
+            ++made_pairs_;
         }
         const std::lock_guard lock(mutex_);
         write_rows();
     }
 
-    /// Writes all files in the order of the plan. A part writes only the rows that it made itself, into its own files.
+    /// In the names of the files of a part.
+    std::string suffix() const { return run_.of == 1 ? "" : sentence("-part-", run_.part, "-of-", run_.of); }
+
+    /// Writes all files in the order of the plan. A part writes only the rows that it made itself, in this run or an
+    /// earlier one, into its own files.
     void write_rows() const
     {
         std::map<std::string, std::vector<StudyRow>> files;
         for (size_t i = 0; i < rows_.size(); ++i)
-            if (rows_[i] && (run_.of == 1 || made_items_.contains(i)))
+            if (rows_[i] && (run_.of == 1 || own_items_.contains(i)))
                 files[file_stem(plan_.items[i])].push_back(*rows_[i]);
-        const std::string part = run_.of == 1 ? "" : sentence("-part-", run_.part, "-of-", run_.of);
+        const std::string part = suffix();
         for (const auto& [stem, rows] : files) {
             const std::string csv = csv_of(rows);
             write_file_atomically(run_.folder / (stem + part + ".csv"), std::as_bytes(std::span(csv)));
         }
         std::vector<StudyRepeat> repeats;
         for (size_t i = 0; i < repeats_.size(); ++i)
-            if (repeats_[i] && (run_.of == 1 || made_pairs_.contains(i))) repeats.push_back(*repeats_[i]);
+            if (repeats_[i] && (run_.of == 1 || own_pairs_.contains(i))) repeats.push_back(*repeats_[i]);
         if (repeats.empty()) return;
         const std::string csv = csv_of(repeats);
         write_file_atomically(run_.folder / ("repeats" + part + ".csv"), std::as_bytes(std::span(csv)));
@@ -277,9 +289,9 @@ private:
     const StudyRun& run_;
     std::vector<std::optional<StudyRow>> rows_;  ///< of plan_.items
     std::vector<std::optional<StudyRepeat>> repeats_;
-    std::set<size_t> made_items_, made_pairs_;
+    std::set<size_t> own_items_, own_pairs_;  ///< those that this part made
     std::vector<Piece> pieces_;
-    size_t to_make_ = 0, made_ = 0;
+    size_t to_make_ = 0, made_ = 0, made_pairs_ = 0;  ///< by this run
     std::mutex mutex_;
 };
 

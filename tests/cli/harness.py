@@ -29,7 +29,7 @@ IS_SLOW = os.environ.get("SHVR_SLOW") == "1"
 # Any message of it makes the command fail. SHVR_SLOW=1 watches every start of every file.
 VALIDATED = {"annotate": "test_annotate.py", "bench": "test_bench.py", "compare": "test_compare.py",
              "doctor": "test_doctor.py", "evaluate": "test_evaluate.py", "export": "test_export.py", "golden": "test_golden.py",
-             "haptics": "test_haptics.py", "import": "test_import.py", "info": "test_info.py",
+             "gather": "test_label_tasks.py", "haptics": "test_haptics.py", "import": "test_import.py", "info": "test_info.py",
              "label": "test_label.py", "phantom": "test_phantom.py", "profile": "test_profile.py",
              "render": "test_render.py", "study": "test_study.py", "view": "test_view.py"}
 IS_VALIDATED = IS_SLOW or Path(sys.argv[0]).name in VALIDATED.values()

@@ -13,7 +13,8 @@ GROUPS = [command for command in PARTS if " SUBCOMMAND\n" in run(command, "--hel
 COMMANDS = [[command] for command in PARTS if command not in GROUPS] + \
            [[command, part] for command, parts in PARTS.items() for part in parts]
 # Run elsewhere: in a window, or for seconds.
-ELSEWHERE = {("view",): "tests/window/test_view.py", ("golden", "calibrate"): "tests/cli/instruments/test_golden.py",
+ELSEWHERE = {("view",): "tests/window/test_view.py", ("gather",): "tests/cli/array/test_label_tasks.py",
+             ("golden", "calibrate"): "tests/cli/instruments/test_golden.py",
              ("haptics", "bench"): "tests/cli/test_haptics.py"}
 # Further arguments of commands that read a file, which is not there.
 READS = {("info",): [], ("import",): ["project"], ("render",): ["-o", "a.png"], ("annotate",): ["--script", "s.jsonl"],
@@ -24,7 +25,8 @@ READS = {("info",): [], ("import",): ["project"], ("render",): ["-o", "a.png"], 
 NEEDS = {("info",): "INPUT", ("import",): "VOLUME", ("render",): "INPUT", ("annotate",): "PROJECT",
          ("export",): "PROJECT", ("evaluate",): "--truth-mask", ("label",): "VOLUME", ("compare",): "A",
          ("profile",): "INPUT", ("profile", "diff"): "A", ("golden", "bless"): "--reason", ("bench",): "--output",
-         ("phantom",): "KIND", ("haptics", "replay"): "TRACE", ("study",): "--output"}
+         ("phantom",): "KIND", ("haptics", "replay"): "TRACE", ("study",): "--output",
+         ("gather",): "MANIFEST"}
 
 
 class ErrorTest(CliTest):
@@ -74,7 +76,7 @@ class Usage(ErrorTest):
             self.assertIn(f'"{command}"', file.read_text(), name)
 
     def test_an_unknown_option_is_status_2_and_names_the_help(self):
-        needed = {**self.works(), **dict.fromkeys(ELSEWHERE, [])}
+        needed = {**self.works(), **dict.fromkeys(ELSEWHERE, []), ("gather",): ["a.pieces"]}
         for command in COMMANDS:
             with self.subTest(command=command):
                 self.check_refused(*command, *needed[tuple(command)], "--sise", status=2,

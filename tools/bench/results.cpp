@@ -233,9 +233,13 @@ Json json_of(const Results& results)
 
 Results read_results(const std::filesystem::path& file)
 {
-    const Json json = Json::parse(read_text(file, MAX_BENCH_BYTES), nullptr, false);
+    return results_of(Json::parse(read_text(file, MAX_BENCH_BYTES), nullptr, false), file.string());
+}
+
+Results results_of(const Json& json, const std::string& name)
+{
     if (!json.is_object() || json.value("shvr_bench", 0) != SCHEMA)
-        fail(file.string(), ": is no bench.json of version ", SCHEMA, "; expected what shvr bench writes");
+        fail(name, ": is no bench.json of version ", SCHEMA, "; expected what shvr bench writes");
     try {
         Results results{.device = json.at("device"), .driver = json.at("driver"), .processor = json.at("processor")};
         results.instructions = json.at("instructions");
@@ -243,8 +247,8 @@ Results read_results(const std::filesystem::path& file)
         if (const auto commit = json.find("commit"); commit != json.end() && commit->is_string())
             results.commit = commit->get<std::string>();
         const Json environment = json.value("environment", Json::object());
-        for (const auto& [name, value] : environment.items())
-            results.environment.emplace_back(name, value.get<std::string>());
+        for (const auto& [variable, value] : environment.items())
+            results.environment.emplace_back(variable, value.get<std::string>());
         results.cores = json.at("cores");
         results.load = json.at("load");
         results.rounds = json.at("rounds");
@@ -262,7 +266,7 @@ Results read_results(const std::filesystem::path& file)
         results.left_out = json.value("left_out", std::vector<std::string>());
         return results;
     } catch (const Json::exception& error) {
-        fail(file.string(), ": is not what shvr bench writes: ", error.what());
+        fail(name, ": is not what shvr bench writes: ", error.what());
     }
 }
 

@@ -78,6 +78,8 @@ void find_front(std::vector<Measured>& runs);
 nlohmann::ordered_json json_of(const Results& results);
 /// Fails with a sentence if the file is not in the format of json_of.
 Results read_results(const std::filesystem::path& file);
+/// The same for JSON that is part of the file `name`.
+Results results_of(const nlohmann::ordered_json& json, const std::string& name);
 /// One line per run.
 std::string csv_of(const Results& results);
 /// Lists the values that repeat exactly on the same machine: the error and the work of each of SHVR's runs.

@@ -20,6 +20,8 @@ const char* built_commit();  // in the build folder, by tools/package/write_comm
 
 namespace {
 
+std::function<void(const Json& result)> prints_taken_by;  ///< empty: standard output
+
 /// Maximum number of MiB: enough for any machine, and small enough that the number of bytes fits into 64 bits.
 constexpr int64_t MAX_MIB = int64_t{1} << 24;
 
@@ -215,8 +217,14 @@ void warn_of_holder(const std::filesystem::path& journal, const Common& common)
                              "; what is there so far is taken"));
 }
 
+void divert_prints(std::function<void(const Json& result)> take)
+{
+    prints_taken_by = std::move(take);
+}
+
 void print(const Json& result)
 {
+    if (prints_taken_by) return prints_taken_by(result);
     clear_progress();
     std::cout << result.dump(2, ' ', false, Json::error_handler_t::replace) << std::endl;
     if (!std::cout) fail("standard output: cannot be written");

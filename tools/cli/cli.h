@@ -72,6 +72,8 @@ void warn_of_losses(const std::vector<std::string>& losses);
 void warn_of_holder(const std::filesystem::path& journal, const Common& common);
 /// Prints one object on standard output.
 void print(const Json& result);
+/// From now on `print` passes its objects to `take` instead; empty: prints again.
+void divert_prints(std::function<void(const Json& result)> take);
 /// "0.8,0.8,1.2"
 glm::dvec3 parse_spacing(const std::string& text);
 /// "512x384"
@@ -128,6 +130,7 @@ void add_profile(CLI::App& program);
 void add_phantom(CLI::App& program);
 void add_study(CLI::App& program);
 void add_golden(CLI::App& program);
+void add_gather(CLI::App& program);
 void add_bench(CLI::App& program);
 void add_view(CLI::App& program);
 void add_haptics(CLI::App& program);

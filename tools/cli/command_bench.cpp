@@ -2,12 +2,14 @@
 
 #include <iostream>
 #include <sstream>
-#include <thread>
 
 #include "engine/base/file.h"
+#include "engine/base/machine/machine.h"
 #include "engine/base/text.h"
 #include "engine/pages/html.h"
 #include "tools/bench/page.h"
+#include "tools/bench/part.h"
+#include "tools/cli/array/split_job.h"
 #include "tools/cli/cli.h"
 #include "tools/cli/haptics_report.h"
 
@@ -19,6 +21,7 @@ struct ErrorBenchOptions {
     Common common;
     std::vector<std::string> scenes;
     std::string output;
+    std::string task;  ///< as add_task_option has it
     std::vector<std::string> sweeps;
     std::vector<std::string> compared;  ///< none, or two files
     std::vector<std::string> mappers = {"fixed"};
@@ -39,7 +42,7 @@ void print_out(const std::string& text)
 
 int threads_of(const ErrorBenchOptions& options)
 {
-    return options.common.threads > 0 ? options.common.threads : int(std::thread::hardware_concurrency());
+    return options.common.threads > 0 ? options.common.threads : processors_allowed();
 }
 
 Json pareto_row(const bench::SceneResult& scene, const bench::Measured& run)
@@ -97,7 +100,13 @@ bench::Sweep proxy_sweep(const std::filesystem::path& output, LongWork& work)
             .table = read_text(csv, MAX_SWEEP_BYTES)};
 }
 
-std::vector<bench::Sweep> chosen_sweeps(const ErrorBenchOptions& options, LongWork& work)
+/// Whether the task of a job, or this process if there are no tasks, measures the scene or sweep with this number.
+bool is_own(const SplitJob& job, size_t number)
+{
+    return !job.is_task() || int64_t(number) % job.of() == job.choice().index;
+}
+
+std::vector<bench::Sweep> chosen_sweeps(const ErrorBenchOptions& options, const SplitJob& job, LongWork& work)
 {
     std::vector<std::string> names = options.sweeps;
     if (names.empty() && options.scenes.empty()) names.assign(std::begin(SWEEPS), std::end(SWEEPS));
@@ -106,7 +115,9 @@ std::vector<bench::Sweep> chosen_sweeps(const ErrorBenchOptions& options, LongWo
             work.stop_if_asked();
         }};
     std::vector<bench::Sweep> sweeps;
-    for (const std::string& name : names) {
+    for (size_t number = 0; number < names.size(); ++number) {
+        const std::string& name = names[number];
+        if (!is_own(job, number)) continue;
         const Progress progress = work.begin(name);
         tell(progress, 0.0);
         sweeps.push_back(name == "blur"        ? bench::sweep_blur(asked)
@@ -137,30 +148,22 @@ bench::PeerOptions peer_of(const ErrorBenchOptions& options)
     return peer;
 }
 
-void run_scenes(const ErrorBenchOptions& options)
+/// Measures all scenes and sweeps, or those of the task.
+bench::Part measure(const ErrorBenchOptions& options, const SplitJob& job, const bench::ChosenScenes& chosen,
+                    const glm::uvec2& pixels, LongWork& work)
 {
-    if (options.output.empty())
-        throw UsageError("--output is missing; expected the folder for bench.json and the report");
-    check_output_folder(options.output);
-    golden::set_environment(options.common.device);
-    const glm::uvec2 pixels = !options.size.empty() ? glm::uvec2(options.size.at(0), options.size.at(1))
-                              : options.quick       ? glm::uvec2(48, 36)
-                                                    : glm::uvec2(120, 90);
-    const auto [scenes, left_out] = scenes_of(options, pixels);
-    for (const std::string& sentence : left_out) say(options.common, sentence);
-    const std::filesystem::path output = options.output;
-    report::make_folder(output);
-
-    LongWork work(options.common.quiet);
-    bench::Results results = bench::who_measures(options.common.device);
+    const auto& [scenes, left_out] = chosen;
+    bench::Part part{.results = bench::who_measures(options.common.device), .pictures = {}, .sweeps = {}};
+    bench::Results& results = part.results;
     results.rounds = options.rounds > 0 ? options.rounds : options.quick ? 3 : 7;
     results.version = SHVR_VERSION;
     results.commit = commit_of_tree();
     results.width = pixels.x;
     results.height = pixels.y;
     results.left_out = left_out;
-    std::vector<bench::Pictures> pictures;
-    for (const bench::Scene& scene : scenes) {
+    for (size_t number = 0; number < scenes.size(); ++number) {
+        const bench::Scene& scene = scenes[number];
+        if (!is_own(job, number)) continue;
         const Progress progress = work.begin(scene.name);
         bench::MeasuredScene measured = bench::measure_scene(scene, {.device = options.common.device,
                                                                      .quick = options.quick,
@@ -168,19 +171,53 @@ void run_scenes(const ErrorBenchOptions& options)
                                                                      .rounds = results.rounds,
                                                                      .threads = threads_of(options),
                                                                      .peer = peer_of(options),
-                                                                     .kept = output,
+                                                                     .kept = options.output,
                                                                      .tell = [&](const std::string&, double share) {
                                                                          work.stop_if_asked();
                                                                          tell(progress, share);
                                                                      }});
         results.scenes.push_back(std::move(measured.result));
-        pictures.push_back(std::move(measured.pictures));
+        part.pictures.push_back(std::move(measured.pictures));
     }
-    const std::vector<bench::Sweep> sweeps = chosen_sweeps(options, work);
-    const std::vector<std::string> written = bench::write_files(results, pictures, sweeps, output);
+    part.sweeps = chosen_sweeps(options, job, work);
+    return part;
+}
+
+bench::Part join(const SplitJob& job)
+{
+    std::vector<bench::Part> parts;
+    for (const std::filesystem::path& piece : job.all_pieces()) parts.push_back(bench::read_part(piece));
+    return bench::joined(std::move(parts));
+}
+
+void run_scenes(const ErrorBenchOptions& options)
+{
+    if (options.output.empty())
+        throw UsageError("--output is missing; expected the folder for bench.json and the report");
+    check_output_folder(options.output);
+    SplitJob job(options.task, options.output, options.common);
+    job.begin({});
+    if (job.is_task() && job.is_done()) return job.report();
+    golden::set_environment(options.common.device);
+    const glm::uvec2 pixels = !options.size.empty() ? glm::uvec2(options.size.at(0), options.size.at(1))
+                              : options.quick       ? glm::uvec2(48, 36)
+                                                    : glm::uvec2(120, 90);
+    const bench::ChosenScenes chosen = scenes_of(options, pixels);
+    for (const std::string& sentence : chosen.left_out) say(options.common, sentence);
+    const std::filesystem::path output = options.output;
+    report::make_folder(output);
+
+    LongWork work(options.common.quiet);
+    const bench::Part part = job.gathers() ? join(job) : measure(options, job, chosen, pixels, work);
+    if (job.is_task()) {
+        bench::write_part(part, job.piece());
+        clear_progress();
+        return job.report();
+    }
+    const std::vector<std::string> written = bench::write_files(part.results, part.pictures, part.sweeps, output);
     Json pareto = Json::array();
     std::string text;
-    for (const bench::SceneResult& scene : results.scenes) {
+    for (const bench::SceneResult& scene : part.results.scenes) {
         text += scene.name + "\n";
         if (const std::optional<std::string> busy = bench::why_times_tell_little(scene)) text += "  " + *busy + "\n";
         for (const std::string& note : scene.notes) text += "  " + note + "\n";
@@ -193,7 +230,7 @@ void run_scenes(const ErrorBenchOptions& options)
     if (options.common.json)
         print({{"bench", (output / "bench.json").string()},
                {"pareto", pareto},
-               {"left_out", left_out},
+               {"left_out", part.results.left_out},
                {"written", written}});
     else
         print_out(text + "* on the front: no other run is better in both\n" + (output / "report.html").string() + "\n");
@@ -278,6 +315,7 @@ void add_bench(CLI::App& program)
     command->add_option("-o,--output", options->output,
                         "Folder for bench.json, bench.csv, equal_*.csv, pareto*.svg and .png, insets.png, sweep-*, "
                         "report.html, and the references");
+    add_task_option(*command, options->task);
     command->add_option("--compare", options->compared, "Two bench.json instead: exit 3 where the second is worse")
         ->expected(2);
     command->add_flag("--ignore-time", options->ignores_time, "With --compare: errors and exact work alone");

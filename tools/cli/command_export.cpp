@@ -1,9 +1,14 @@
 // shvr export: writes annotations in the formats of other programs, and their measurements. Needs no Vulkan device.
 
+#include <span>
+
 #include "engine/annotation/work/work.h"
+#include "engine/base/atomic_file.h"
+#include "engine/base/file.h"
 #include "engine/base/text.h"
 #include "engine/tasks/surface_task.h"
 #include "engine/volume/unit.h"
+#include "tools/cli/array/split_job.h"
 #include "tools/cli/cli.h"
 
 namespace shvr::cli {
@@ -14,6 +19,7 @@ struct ExportCommandOptions {
     Common common;
     std::string project, mask, offset, trace, mesh, surface, metrics;
     std::string space = "physical";
+    std::string split;  ///< as add_task_option has it
     ExportTask task{.names = OptionNames::command_line};
     SurfaceTask surface_task{.names = OptionNames::command_line};
 };
@@ -84,12 +90,62 @@ Json to_json(const ExportResult& result, const SurfaceResult& surfaces)
             {"left_out", result.left_out}};
 }
 
-void run_export(const ExportCommandOptions& options)
+/// What to write: everything that the command asks for, or the part of a task.
+struct Outputs {
+    ExportTask task;
+    std::optional<SurfaceTask> surface;
+};
+
+/// Returns the file next to which pieces are: the first one that is written.
+std::filesystem::path first_output(const ExportCommandOptions& options, const Outputs& outputs)
 {
-    const ExportTask task = task_of(options);
-    const std::optional<SurfaceTask> surface_task = surface_task_of(options);
-    check(task);
-    if (surface_task) check(*surface_task);
+    const ExportTask& task = outputs.task;
+    for (const std::filesystem::path& path : {task.mask, task.offset, task.trace, task.mesh, task.metrics})
+        if (!path.empty()) return path;
+    if (task.labels) return std::filesystem::path(options.project) / "labels" / "mask";
+    if (outputs.surface) return outputs.surface->surface;
+    throw UsageError("--task is given, but nothing to write; expected --mask, --trace or another output");
+}
+
+/// Leaves every N-th output, of those that N tasks write.
+Outputs part_of(Outputs outputs, const TaskChoice& choice)
+{
+    int64_t number = 0;
+    const auto is_other = [&](bool is_wanted) { return is_wanted && number++ % choice.of != choice.index; };
+    ExportTask& task = outputs.task;
+    for (std::filesystem::path* path : {&task.mask, &task.offset, &task.trace, &task.mesh, &task.metrics})
+        if (is_other(!path->empty())) path->clear();
+    if (is_other(task.labels)) task.labels = false;
+    if (task.metrics.empty()) task.sections.clear();
+    if (is_other(outputs.surface.has_value())) outputs.surface.reset();
+    return outputs;
+}
+
+/// Joins what the tasks have printed; their files are in place.
+Json joined(const SplitJob& job)
+{
+    Json all;
+    for (const std::filesystem::path& piece : job.all_pieces()) {
+        const Json told = Json::parse(read_text(piece, int64_t{64} << 20), nullptr, false);
+        const bool is_piece = told.is_object() && told.contains("written") && told.contains("left_out") &&
+                              told.contains("triangles_by_group");
+        if (!is_piece)
+            fail(piece.string(),
+                 ": is not the piece of a task of shvr export; expected one: remove it, and run the "
+                 "task again");
+        if (all.is_null()) {
+            all = told;
+            continue;
+        }
+        for (const char* key : {"written", "left_out"})
+            for (const Json& each : told[key]) all[key].push_back(each);
+        all["triangles_by_group"].update(told["triangles_by_group"]);
+    }
+    return all;
+}
+
+Json write_outputs(const ExportCommandOptions& options, const Outputs& whole, const SplitJob& job)
+{
     // Annotations in an archived project cannot be read, so an export would silently write empty files.
     if (const std::string archived = archived_project(options.project); !archived.empty()) fail(archived);
     LongWork long_work(options.common.quiet);
@@ -122,11 +178,12 @@ void run_export(const ExportCommandOptions& options)
                                     .volume_path = opened.session.volume_path,
                                     .trace_path = opened.session.trace_path,
                                     .mask_path = work.mask_of_header()};
-    if (surface_task) {
-        check(task, annotation);
-        check(*surface_task, annotation);
-        check_names(*surface_task, surface_files(*surface_task, annotation.mask), task);
+    if (whole.surface) {
+        check(whole.task, annotation);
+        check(*whole.surface, annotation);
+        check_names(*whole.surface, surface_files(*whole.surface, annotation.mask), whole.task);
     }
+    const auto [task, surface_task] = job.is_task() ? part_of(whole, job.choice()) : whole;
     const ExportResult result = run(task, annotation, long_work, [&](const ExportResult& so_far) {
         // The trace is written first.
         if (so_far.written.size() == 1) warn(so_far.left_out, options.common);
@@ -136,7 +193,32 @@ void run_export(const ExportCommandOptions& options)
     if (surface_task)
         surfaces = run(*surface_task, annotation, long_work,
                        [&](const SurfaceResult& so_far) { say(options.common, "wrote " + so_far.written.back()); });
-    if (options.common.json) print(to_json(result, surfaces));
+    return to_json(result, surfaces);
+}
+
+void run_export(const ExportCommandOptions& options)
+{
+    const Outputs whole{task_of(options), surface_task_of(options)};
+    check(whole.task);
+    if (whole.surface) check(*whole.surface);
+    SplitJob job(options.split, options.split.empty() ? std::filesystem::path("-") : first_output(options, whole),
+                 options.common);
+    if (job.gathers()) {
+        job.begin({});
+        return print(joined(job));
+    }
+    if (job.is_task()) {
+        job.begin(
+            inputs_of(options.project, open_unmeasured_session(options.project, options.common.settings).session));
+        if (job.is_done()) return job.report();
+    }
+    const Json result = write_outputs(options, whole, job);
+    if (job.is_task()) {
+        const std::string text = result.dump();
+        write_file_atomically(job.piece(), std::as_bytes(std::span(text)));
+        return job.report();
+    }
+    if (options.common.json) print(result);
 }
 
 }  // namespace
@@ -150,6 +232,7 @@ void add_export(CLI::App& program)
     command->add_option("--mask", options->mask, "The painted voxels (.mask, .nrrd, .tif; .zarr: OME-Zarr labels)");
     command->add_flag("--labels", options->task.labels,
                       "The painted voxels as OME-Zarr labels in the project, labels/mask");
+    add_task_option(*command, options->split);
     add_version_option(*command, options->task.version, "unless given, as the project or the labels there are, or 0.4");
     command->add_option("--offset", options->offset, "The density offsets (.offset, .nrrd, .tif)");
     command->add_option("--trace", options->trace, "Nodes and internodes (.graphml, .txt, .swc, .rsml)");

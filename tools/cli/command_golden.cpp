@@ -8,6 +8,7 @@
 #include <iostream>
 
 #include "engine/pages/html.h"
+#include "tools/cli/array/split_job.h"
 #include "tools/cli/cli.h"
 #include "tools/golden/calibrate.h"
 #include "tools/golden/run.h"
@@ -25,6 +26,7 @@ struct GoldenCommandOptions {
     std::string output = "golden-results";
     std::string reason;
     std::string table;  ///< output of calibrate; empty: none
+    std::string task;   ///< as add_task_option has it
     bool only_failed = false, keeps_light = false;
 };
 
@@ -65,19 +67,37 @@ std::string lines_of(const golden::Outcome& outcome)
     return text + outcome.report.string() + "\n";
 }
 
+/// Returns every N-th golden, of those that N tasks draw.
+std::vector<golden::Golden> goldens_of(const TaskChoice& task, const std::vector<golden::Golden>& goldens)
+{
+    std::vector<golden::Golden> chosen;
+    for (size_t i = size_t(task.index); i < goldens.size(); i += size_t(task.of)) chosen.push_back(goldens[i]);
+    return chosen;
+}
+
 void run_goldens(const GoldenCommandOptions& options)
 {
     check_output_folder(options.output);
     const std::vector<golden::Golden> goldens = golden::goldens_in(options.folder, options.pattern);
+    SplitJob job(options.task, options.output, options.common);
+    job.begin({options.folder});
+    if (job.is_task() && job.is_done()) return job.report();
     LongWork work(options.common.quiet);
-    const Progress progress = work.begin("drawing goldens");
-    const golden::Outcome outcome = golden::run_all(
-        goldens, options.output, studio_options(options.common),
-        [&](const golden::Golden&, double fraction) {
-            work.stop_if_asked();
-            tell(progress, fraction);
-        },
-        options.keeps_light);
+    const Progress progress = work.begin(job.gathers() ? "joining results" : "drawing goldens");
+    const auto show = [&](const golden::Golden&, double fraction) {
+        work.stop_if_asked();
+        tell(progress, fraction);
+    };
+    if (job.is_task()) {
+        golden::run_part(goldens_of(job.choice(), goldens), options.output, job.piece(), studio_options(options.common),
+                         show, options.keeps_light);
+        clear_progress();
+        return job.report();
+    }
+    const golden::Outcome outcome =
+        job.gathers()
+            ? golden::join_parts(goldens, options.output, job.all_pieces())
+            : golden::run_all(goldens, options.output, studio_options(options.common), show, options.keeps_light);
     clear_progress();
     if (options.common.json)
         print(outcome_json(outcome));
@@ -262,9 +282,10 @@ void add_golden(CLI::App& program)
     CLI::App* command =
         program.add_subcommand("golden", "Regression pictures: draws sessions and compares them with what was blessed");
     command->require_subcommand(1);
-    add_part(*command, options, "run", "Draws them and compares; exit 3 where one fails",
-             "shvr golden run 'tubes_*' --folder golden -o golden-results", run_goldens)
-        ->add_flag("--light", options->keeps_light, "NAME.actual.pfm, too: the picture in linear light, 32-bit floats");
+    CLI::App* draw = add_part(*command, options, "run", "Draws them and compares; exit 3 where one fails",
+                              "shvr golden run 'tubes_*' --folder golden -o golden-results", run_goldens);
+    draw->add_flag("--light", options->keeps_light, "NAME.actual.pfm, too: the picture in linear light, 32-bit floats");
+    add_task_option(*draw, options->task);
     CLI::App* accept =
         add_part(*command, options, "bless", "Accepts what is drawn now as correct; on lavapipe alone, never in CI",
                  "shvr golden bless overview --reason \"The light comes from the left\"", bless);

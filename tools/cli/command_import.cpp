@@ -6,7 +6,8 @@
 #include <iomanip>
 
 #include "engine/base/atomic_writer.h"
-#include "engine/tasks/import_task.h"
+#include "engine/tasks/task_parts.h"
+#include "tools/cli/array/split_job.h"
 #include "tools/cli/cli.h"
 
 namespace shvr::cli {
@@ -16,6 +17,7 @@ namespace {
 struct ImportCommandOptions {
     Common common;
     std::string volume, project, crop, blur = "0";
+    std::string split;  ///< as add_task_option has it
     ImportTask task{.names = OptionNames::command_line};
 };
 
@@ -86,8 +88,16 @@ void run_import(const ImportCommandOptions& options)
     task.blur_voxels = parse_blur(options.blur);
     task.threads = options.common.threads;
     task.budget_host_mib = int64_t(options.common.budget_host_mib);
+    SplitJob job(options.split, task.project, options.common);
+    if (job.is_split()) check_part(task);
+    job.begin({task.volume});
+    if (job.is_task() && job.is_done()) return job.report();
     LongWork work(options.common.quiet);
-    const ImportResult result = run(task, work);
+    if (job.is_task()) {
+        run_part(task, job.choice(), job.piece(), work);
+        return job.report();
+    }
+    const ImportResult result = job.gathers() ? join_parts(task, job.all_pieces(), work) : run(task, work);
     const ImportReport& report = result.report;
     const VolumeInfo& info = report.info;
     clear_progress();
@@ -156,6 +166,7 @@ void add_import(CLI::App& program)
         ->check(CLI::Range(0, 23));
     command->add_option("--frame", options->task.choice.frame, "Which time point to take from a file with several")
         ->type_name("N");
+    add_task_option(*command, options->split);
     add_version_option(*command, options->task.version, "0.4 unless given");
     command->add_flag("--shards", options->task.shards,
                       "With --ome-zarr 0.5: up to 512 chunks in a file, for storage that dislikes many small files");

@@ -1,7 +1,8 @@
 // shvr label: labels connected components of a whole volume, which may exceed memory. Needs no Vulkan device.
 
 #include "engine/annotation/work/work_offsets.h"
-#include "engine/tasks/label_task.h"
+#include "engine/tasks/task_parts.h"
+#include "tools/cli/array/split_job.h"
 #include "tools/cli/cli.h"
 
 namespace shvr::cli {
@@ -11,6 +12,7 @@ namespace {
 struct LabelCommandOptions {
     Common common;
     std::string volume, output;
+    std::string split;  ///< as add_task_option has it
     int connectivity = 6;
     LabelTask task{.names = OptionNames::command_line};
 };
@@ -22,8 +24,13 @@ void run_label(const LabelCommandOptions& options)
     task.output = options.output;
     task.threads = options.common.threads;
     check(task);
+    if (!options.split.empty() && options.output.empty())
+        throw UsageError("--task is given without --output; expected both, since the pieces lie next to the output");
+    SplitJob job(options.split, options.output, options.common);
     LongWork work(options.common.quiet);
     const UnmeasuredSession opened = open_unmeasured_session(options.volume, options.common.settings);
+    job.begin(inputs_of(options.volume, opened.session));
+    if (job.is_task() && job.is_done()) return job.report();
     const VolumeInfo info = opened.source->info();
     check(task, *opened.source, opened.session.volume_path);
     warn(info.warnings, options.common);
@@ -33,7 +40,12 @@ void run_label(const LabelCommandOptions& options)
     const DensityField offsets = offsets_of(work_files(opened.session, info), options.common.belief, notices);
     warn(notices, options.common);
     const std::shared_ptr<const VolumeSource> source = with_offsets(opened.source, offsets);
-    const LabelResult result = run(task, *source, options.volume, work);
+    if (job.is_task()) {
+        run_part(task, *source, options.volume, job.choice(), job.piece(), work);
+        return job.report();
+    }
+    const LabelResult result = job.gathers() ? join_parts(task, *source, options.volume, job.all_pieces(), work)
+                                             : run(task, *source, options.volume, work);
     warn(result.warnings, options.common);
     const Components::Counts& counts = result.counts;
     if (!options.common.json) {
@@ -88,6 +100,7 @@ void add_label(CLI::App& program)
         ->check(CLI::Range(int64_t{1}, int64_t{1} << 32));
     command->add_option("-o,--output", options->output,
                         "The labels, from 1 in the order of first voxels (.zarr: OME-Zarr labels; .nrrd, .tif; .mask)");
+    add_task_option(*command, options->split);
     add_version_option(*command, options->task.version, "unless given, as the image or the labels there are, or 0.4");
     add_incomplete_option(*command, options->task.allows_incomplete,
                           "Take voxels that cannot be read for dark ones, with a warning, instead of failing");

@@ -6,6 +6,7 @@
 #include "engine/live/previewer.h"
 #include "engine/picture/picture_file.h"
 #include "engine/session/picture_session.h"
+#include "tools/cli/array/render_bands.h"
 #include "tools/cli/cli.h"
 #include "tools/cli/figure/figure_options.h"
 #include "tools/cli/movie/render_movie.h"
@@ -17,6 +18,7 @@ namespace {
 struct RenderCommandOptions {
     Common common;
     std::string input, output, size, camera, transfer_function;
+    std::string task;  ///< as add_task_option has it
     bool with_session = false;
     MovieOptions movie;
     FigureOptions figure;
@@ -80,6 +82,8 @@ void run_render(RenderCommandOptions options)
         throw UsageError(options.output.empty() ? "--output is missing; expected -o for a picture, or --movie"
                                                 : "--output and --movie are given; expected one of them");
     check_figure(options.figure);
+    if (!options.movie.path.empty() && !options.task.empty())
+        throw UsageError("--task and --movie are given; expected one of them, since a movie is not split");
     if (!options.movie.path.empty()) {
         take_shorthands(options);
         return render_movie(
@@ -89,6 +93,15 @@ void run_render(RenderCommandOptions options)
     options.output = written_path(options.output).string();
     check_output_is_not(file_of_input(options.input), options.output);
     take_shorthands(options);
+    SplitJob job(options.task, options.output, options.common);
+    if (job.gathers()) {
+        job.begin({});
+        return join_bands(job, options.output, options.common);
+    }
+    if (job.is_task()) {
+        job.begin(inputs_of(options.input, open_unmeasured_session(options.input, options.common.settings).session));
+        if (job.is_done()) return job.report();
+    }
     LongWork work(options.common.quiet);
     const auto check = [&](const Session& session, const VolumeInfo& volume) {
         check_output_is_not(session.volume_path, options.output);
@@ -100,16 +113,20 @@ void run_render(RenderCommandOptions options)
     const std::optional<ProbeLook> probe = shown_probe(opened.session, *opened.renderer, *opened.annotator);
     const Progress progress = work.begin("drawing " + options.output);
     const PictureProbe kept_probe = outlines_probe(options.input) ? PictureProbe::as_rendered : PictureProbe::plain;
+    const RenderOptions how{.probe = probe,
+                            .outlines_probe = outlines_probe(options.input),
+                            .count_work = options.common.json,
+                            .progress = progress};
+    const PictureTexts texts =
+        options.with_session ? texts_of_picture(opened.session, camera, options.output, opened.project, kept_probe)
+                             : PictureTexts();
     std::vector<std::string> left_out;
-    PictureFile file(options.output, *opened.renderer, opened.session, camera,
-                     {.probe = probe,
-                      .outlines_probe = outlines_probe(options.input),
-                      .count_work = options.common.json,
-                      .progress = progress},
-                     options.with_session
-                         ? texts_of_picture(opened.session, camera, options.output, opened.project, kept_probe)
-                         : PictureTexts(),
-                     figure_over(options.figure, opened, opened.session, camera, left_out));
+    const PictureFile::Over over = figure_over(options.figure, opened, opened.session, camera, left_out);
+    if (job.is_task()) {
+        draw_band(job, opened, camera, {how, texts, over, left_out}, options.common, work);
+        return job.report();
+    }
+    PictureFile file(options.output, *opened.renderer, opened.session, camera, how, texts, over);
     const Picture picture = draw(file, opened, options, work);
     check_validation(opened);
     warn_of_gaps(opened, options.input, options.common);
@@ -156,6 +173,7 @@ void add_render(CLI::App& program)
                       "Keep the session in the .png, so that it can be rendered again, as the window's pictures do");
     add_figure_options(*command, options->figure);
     add_movie_options(*command, options->movie);
+    add_task_option(*command, options->task);
     add_incomplete_option(*command, options->common,
                           "Write a picture that lacks something, with a warning, instead of failing");
     add_belief_option(*command, options->common);

@@ -1,6 +1,5 @@
 // shvr study: the thesis's study, repeated by simulated annotators. Needs no device.
 
-#include <algorithm>
 #include <filesystem>
 #include <span>
 
@@ -10,6 +9,7 @@
 #include "engine/study/report/report.h"
 #include "engine/study/statistics.h"
 #include "engine/study/study.h"
+#include "tools/cli/array/split_job.h"
 #include "tools/cli/cli.h"
 
 namespace shvr::cli {
@@ -23,18 +23,6 @@ struct StudyCommandOptions {
     std::vector<uint32_t> annotators;
     bool keeps_annotations = false;
 };
-
-/// "2/8"
-std::pair<int64_t, int64_t> parse_part(const std::string& text)
-{
-    if (text.empty()) return {0, 1};
-    const size_t slash = std::min(text.find('/'), text.size());
-    const std::optional<int64_t> part = whole_of(text.substr(0, slash));
-    const std::optional<int64_t> of = whole_of(std::string_view(text).substr(std::min(slash + 1, text.size())));
-    if (!part || !of || *of < 1 || *part < 0 || *part >= *of)
-        throw UsageError(sentence("--task is ", in_quotes(text), "; expected I/N, with I from 0 to N - 1, as in 2/8"));
-    return {*part, *of};
-}
 
 StudySize size_named(const std::string& text)
 {
@@ -104,18 +92,20 @@ void run_study_command(const StudyCommandOptions& options)
 {
     StudyChoice choice{
         .size = size_named(options.size), .seeds = options.seeds, .conditions = {}, .annotators = options.annotators};
-    const auto [part, of] = parse_part(options.part);
+    SplitJob job(options.part, options.folder, options.common);
     if (!options.conditions.empty()) choice.conditions = read_study_conditions(options.conditions);
     const StudyPlan plan = plan_study(choice);
+    job.begin({options.conditions});
     LongWork work(options.common.quiet);
     const StudyRun run{.folder = options.folder,
                        .threads = options.common.threads,
-                       .part = part,
-                       .of = of,
+                       .part = job.is_task() ? job.choice().index : 0,
+                       .of = job.is_task() ? job.of() : 1,
                        .keeps_annotations = options.keeps_annotations,
                        .progress = work.begin("annotating phantoms for " + options.folder)};
     const StudyResults results = run_study(plan, run);
     clear_progress();
+    if (job.is_task()) write_text(job.piece(), sentence(results.made_here, "\n"));
     const std::filesystem::path folder = options.folder;
     const std::string csv = (folder / "rows.csv").string(), report = (folder / "report.html").string();
     const bool is_whole = results.missing == 0;
@@ -124,11 +114,13 @@ void run_study_command(const StudyCommandOptions& options)
         write_text(report, page_of(report_of(options, plan, results)));
     }
     if (options.common.json) {
-        print({{"report", is_whole ? Json(report) : Json(nullptr)},
-               {"csv", csv},
-               {"rows", results.rows.size()},
-               {"made", results.made_here},
-               {"missing", results.missing}});
+        Json told{{"report", is_whole ? Json(report) : Json(nullptr)},
+                  {"csv", csv},
+                  {"rows", results.rows.size()},
+                  {"made", results.made_here},
+                  {"missing", results.missing}};
+        if (job.is_task()) told.update({{"task", job.choice().in_words()}, {"pieces", job.of()}});
+        print(told);
         return;
     }
     say_means(results.rows, options.common);
@@ -161,14 +153,13 @@ void add_study(CLI::App& program)
     command->add_flag("--keep-annotations", options->keeps_annotations,
                       "Writes each trace and mask into the folder annotations, where those that are missing are made "
                       "again");
-    command->add_option("--task", options->part, "Makes part I of N only, from 0 on; without it, all that is missing")
-        ->type_name("I/N");
+    add_task_option(*command, options->part);
     command->add_option("--threads", options->common.threads, "Worker threads; 0: one per core")
         ->check(CLI::Range(0, 1024));
     add_output_options(*command, options->common);
     command->footer(
-        "Small takes seconds, standard about an hour of two cores, full several hours: split it with --task, then run "
-        "it once without.\nExample:\n  shvr study --size small -o study");
+        "Small takes seconds, standard about an hour of two cores, full several hours: split it with --task, then join "
+        "it with shvr gather.\nExample:\n  shvr study --size small -o study");
     command->callback([options] { run_study_command(*options); });
 }
 

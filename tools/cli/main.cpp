@@ -4,16 +4,20 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <thread>
 #include <utility>
 #include <vector>
 
+#include "engine/base/machine/machine.h"
 #include "engine/base/text.h"
 #include "engine/remote/address.h"
+#include "tools/cli/array/split_job.h"
 #include "tools/cli/cli.h"
 #include "tools/cli/stop.h"
 
@@ -74,9 +78,8 @@ std::vector<std::string> without_queries(int argc, char** argv)
     return arguments;
 }
 
-int run(int argc, char** argv)
+void add_commands(CLI::App& program)
 {
-    CLI::App program("SHVR: see, feel and annotate tubular structures in 3-D scans", "shvr");
     program.require_subcommand(1);
     const std::string version = "shvr " + shvr::cli::version_in_words();
     program.set_version_flag("--version", version);
@@ -94,15 +97,25 @@ int run(int argc, char** argv)
     shvr::cli::add_bench(program);
     shvr::cli::add_phantom(program);
     shvr::cli::add_study(program);
+    shvr::cli::add_gather(program);
     shvr::cli::add_haptics(program);
     shvr::cli::add_doctor(program);
     shvr::cli::add_view(program);
     shvr::cli::add_manual(program);
     for (CLI::App* command : program.get_subcommands({})) command->set_version_flag("--version", version);
+}
+
+constexpr const char* DESCRIPTION = "SHVR: see, feel and annotate tubular structures in 3-D scans";
+
+int run(int argc, char** argv)
+{
+    CLI::App program(DESCRIPTION, "shvr");
+    add_commands(program);
     refuse_empty(argc, argv);
     try {
         std::vector<std::string> arguments = without_queries(argc, argv);
         if (arguments.empty()) arguments.emplace_back("view");
+        shvr::cli::note_arguments({arguments.rbegin(), arguments.rend()});
         program.parse(std::move(arguments));  // runs the command's callback
     } catch (const CLI::Success& asked) {     // --help, --version
         return program.exit(asked);
@@ -136,9 +149,34 @@ void keep_heap_compact()
 
 }  // namespace
 
+namespace shvr::cli {
+
+void parse_and_run(const std::vector<std::string>& arguments)
+{
+    CLI::App program(DESCRIPTION, "shvr");
+    add_commands(program);
+    note_arguments(arguments);
+    try {
+        program.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+    } catch (const CLI::ParseError& error) {
+        throw UsageError(usage_error(program, error));
+    }
+}
+
+}  // namespace shvr::cli
+
+/// Makes lavapipe start as many threads as the job was given: it heeds affinity, but no control groups.
+void limit_lavapipe()
+{
+    const int allowed = shvr::processors_allowed();
+    if (allowed < int(std::thread::hardware_concurrency()))
+        static_cast<void>(::setenv("LP_NUM_THREADS", std::to_string(allowed).c_str(), 0));
+}
+
 int main(int argc, char** argv)
 {
     keep_heap_compact();
+    limit_lavapipe();
     shvr::cli::open_standard_streams();
     shvr::cli::end_in_words();
     try {

@@ -1,5 +1,6 @@
 #include "tools/golden/run.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include <nlohmann/json.hpp>
@@ -93,6 +94,49 @@ std::vector<std::string> failures_of(const std::vector<Result>& results)
     return failed;
 }
 
+std::vector<Result> run_some(const std::vector<Golden>& goldens, const fs::path& output, const StudioOptions& options,
+                             const std::function<void(const Golden&, double)>& tell, bool keeps_light)
+{
+    std::vector<Result> results;
+    for (const Golden& golden : goldens) {
+        if (tell) tell(golden, double(results.size()) / double(goldens.size()));
+        results.push_back(run(golden, options));
+        Result& result = results.back();
+        write_pictures(result, output);
+        if (keeps_light && result.light) write_pfm(output / (golden.name + ".actual.pfm"), *result.light);
+        result.light.reset();
+    }
+    return results;
+}
+
+/// The content of results.json.
+std::string results_text(const std::vector<Result>& results)
+{
+    Json rows = Json::array();
+    for (const Result& result : results) rows.push_back(json_of(result));
+    return Json{{"shvr_golden_results", 1}, {"goldens", rows}}.dump(2) + "\n";
+}
+
+void write_all(Outcome& outcome, const fs::path& output)
+{
+    outcome.failed = failures_of(outcome.results);
+    report::write_text(output / "results.json", results_text(outcome.results));
+    write_reports(outcome, output);
+}
+
+/// Appends the results in a file that `results_text` made, with their pictures in `output`.
+void read_results(const fs::path& file, const fs::path& output, const std::string& pattern,
+                  std::vector<Result>& results)
+{
+    const Json json = Json::parse(read_text(file, MAX_RESULTS_BYTES), nullptr, false);
+    try {
+        for (const Json& row : json.at("goldens"))
+            if (matches(row.at("name"), pattern)) results.push_back(result_of(row, output));
+    } catch (const Json::exception& error) {
+        fail(file.string(), ": is not what shvr golden run writes: ", error.what());
+    }
+}
+
 }  // namespace
 
 Result run(const Golden& golden, const StudioOptions& options)
@@ -116,19 +160,30 @@ Outcome run_all(const std::vector<Golden>& goldens, const fs::path& output, cons
     Outcome outcome{.report = output / "report.html"};
     report::write_text(outcome.report,
                        report::page("SHVR goldens", "", "<h1>The run did not end: it crashed or was stopped.</h1>\n"));
+    outcome.results = run_some(goldens, output, options, tell, keeps_light);
+    write_all(outcome, output);
+    return outcome;
+}
+
+void run_part(const std::vector<Golden>& goldens, const fs::path& output, const fs::path& results,
+              const StudioOptions& options, const std::function<void(const Golden&, double)>& tell, bool keeps_light)
+{
+    report::make_folder(output);
+    report::write_text(results, results_text(run_some(goldens, output, options, tell, keeps_light)));
+}
+
+Outcome join_parts(const std::vector<Golden>& goldens, const fs::path& output, const std::vector<fs::path>& results)
+{
+    std::vector<Result> found;
+    for (const fs::path& file : results) read_results(file, output, "*", found);
+    Outcome outcome{.report = output / "report.html"};
     for (const Golden& golden : goldens) {
-        if (tell) tell(golden, double(outcome.results.size()) / double(goldens.size()));
-        outcome.results.push_back(run(golden, options));
-        Result& result = outcome.results.back();
-        write_pictures(result, output);
-        if (keeps_light && result.light) write_pfm(output / (golden.name + ".actual.pfm"), *result.light);
-        result.light.reset();
+        const auto result = std::ranges::find(found, golden.name, [](const Result& one) { return one.golden.name; });
+        if (result == found.end())
+            fail(golden.file().string(), ": is in the results of no task; expected the same goldens as the tasks had");
+        outcome.results.push_back(std::move(*result));
     }
-    outcome.failed = failures_of(outcome.results);
-    Json rows = Json::array();
-    for (const Result& result : outcome.results) rows.push_back(json_of(result));
-    report::write_text(output / "results.json", Json{{"shvr_golden_results", 1}, {"goldens", rows}}.dump(2) + "\n");
-    write_reports(outcome, output);
+    write_all(outcome, output);
     return outcome;
 }
 
@@ -136,14 +191,8 @@ Outcome read_run(const fs::path& output, const std::string& pattern)
 {
     const fs::path file = output / "results.json";
     if (!is_file(file)) fail(file.string(), " is missing; expected what shvr golden run writes");
-    const Json json = Json::parse(read_text(file, MAX_RESULTS_BYTES), nullptr, false);
     Outcome outcome{.report = output / "report.html"};
-    try {
-        for (const Json& row : json.at("goldens"))
-            if (matches(row.at("name"), pattern)) outcome.results.push_back(result_of(row, output));
-    } catch (const Json::exception& error) {
-        fail(file.string(), ": is not what shvr golden run writes: ", error.what());
-    }
+    read_results(file, output, pattern, outcome.results);
     if (outcome.results.empty()) fail(file.string(), ": no golden is named ", in_quotes(pattern));
     outcome.failed = failures_of(outcome.results);
     return outcome;

@@ -64,6 +64,16 @@ struct Outcome {
 Outcome run_all(const std::vector<Golden>& goldens, const std::filesystem::path& output, const StudioOptions& options,
                 const std::function<void(const Golden&, double)>& tell = {}, bool keeps_light = false);
 
+/// One of several processes that share `output`: draws these goldens and writes their pictures, and `results`, a file
+/// like results.json.
+void run_part(const std::vector<Golden>& goldens, const std::filesystem::path& output,
+              const std::filesystem::path& results, const StudioOptions& options,
+              const std::function<void(const Golden&, double)>& tell = {}, bool keeps_light = false);
+/// Reads the results of all of these processes, and writes the files that one process writes for `goldens`. Fails if a
+/// golden has no result.
+Outcome join_parts(const std::vector<Golden>& goldens, const std::filesystem::path& output,
+                   const std::vector<std::filesystem::path>& results);
+
 /// Reads the results.json and pictures of an earlier run from `output`, so that its reports can be written again.
 Outcome read_run(const std::filesystem::path& output, const std::string& pattern);
 void write_reports(const Outcome& outcome, const std::filesystem::path& output);

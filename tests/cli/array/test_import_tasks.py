@@ -1,0 +1,110 @@
+"""shvr import --task: a project made by several processes equals that of one process, file by file."""
+import json
+import random
+import shutil
+import signal
+import struct
+import subprocess
+import unittest
+from pathlib import Path
+
+from harness import ENVIRONMENT, IS_SLOW, SHVR, Volume
+from tasks import SplitTest
+
+
+class ImportTasks(SplitTest):
+    OTHER = ["--blur", "2.5"]
+
+    def write_volume(self, size, voxel_type="uint8", seed=3):
+        """Smooth enough to compress, with every slice different."""
+        numbers = random.Random(seed)
+        row = [numbers.randint(0, 200) for _ in range(size[0])]
+        values = []
+        for z in range(size[2]):
+            for y in range(size[1]):
+                shift = (7 * z + 3 * y) % size[0]
+                values += row[shift:] + row[:shift]
+                values[-1] = (z + y) % 251
+        return Volume(size, values, (2.0, 2.0, 3.0), voxel_type).write(self.folder)
+
+    def import_of(self, volume, project, *more):
+        return ["import", volume, self.folder / project, *more]
+
+    def check_every_count(self, volume, counts, *more):
+        self.check(*self.import_of(volume, "project", *more))
+        whole = self.folder / "whole"
+        (self.folder / "project").rename(whole)
+        for of in counts:
+            with self.subTest(of=of, more=more):
+                self.tasks(of, *self.import_of(volume, "project", *more))
+                self.assertFalse((self.folder / "project").exists())
+                told = self.gather(self.folder / "project", "--remove")
+                self.assertEqual((told["pieces"], told["missing"]), (of, []))
+                self.assert_equal_files(self.folder / "project", whole)
+                shutil.rmtree(self.folder / "project")
+        shutil.rmtree(whole)
+
+    def test_projects_are_equal_file_by_file(self):
+        # 7 slabs of 64 slices; layers of the first three levels lie across the borders of most tasks.
+        self.check_every_count(self.write_volume((70, 40, 410)), (*self.COUNTS, 9) if IS_SLOW else self.COUNTS)
+
+    def test_preparation_shards_and_floats_are_equal_too(self):
+        volume = self.write_volume((40, 33, 330))
+        self.check_every_count(volume, (3,), "--crop", "3,2,10,39,30,300", "--reverse", "--blur", "0.8",
+                               "--downscale", "1")
+        self.check_every_count(volume, (3,), "--ome-zarr", "0.5", "--shards")
+        self.check_every_count(volume, (2,), "--labels")
+        size = (20, 17, 200)
+        values = [float("nan") if i % 977 == 0 else i % 331 - 7.5 for i in range(size[0] * size[1] * size[2])]
+        self.check_every_count(Volume(size, values, voxel_type="float").write(self.folder, "floats"), (3,))
+
+    def test_a_long_volume_has_levels_beyond_the_sixth(self):
+        # 65 slabs: level 6 has 65 slices, and the level after it depends on those of all tasks.
+        self.check_every_count(self.write_volume((5, 4, 4130)), (2, 7) if IS_SLOW else (3,))
+
+    def test_a_sparse_volume_is_imported_while_joining(self):
+        size = (70, 70, 600)
+        values = [0] * (size[0] * size[1] * size[2])
+        values[5] = 9
+        project = self.folder / "sparse"
+        self.check("import", Volume(size, values).write(self.folder, "dense"), project, "--quiet")
+        self.check_every_count(project, (3,))
+
+    def test_tasks_may_be_killed_repeated_and_run_twice(self):
+        volume = self.write_volume((90, 80, 400))
+        output = self.folder / "project"
+        arguments = self.import_of(volume, "project")
+        self.check_rules(output, *arguments)
+        for number in (signal.SIGKILL, signal.SIGTERM):
+            process = subprocess.Popen([SHVR, *map(str, arguments), "--task", "1/3", "--quiet"], env=ENVIRONMENT,
+                                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            part = Path(f"{output}.pieces") / "piece-1.part" / "0"
+            while process.poll() is None and not part.exists():
+                pass
+            process.send_signal(number)
+            process.wait()
+        self.tasks(3, *arguments, order=(1,))
+        self.gather(output)
+        whole = self.folder / "whole"
+        output.rename(whole)
+        self.check(*arguments)
+        self.assert_equal_files(output, whole)
+
+    def test_a_changed_source_and_incomplete_volumes_are_refused(self):
+        volume = self.write_volume((20, 20, 130))
+        self.check_refused(*self.import_of(volume, "project", "--allow-incomplete", "--task", "0/2"), status=2,
+                           says=["--allow-incomplete"])
+        self.assertFalse((self.folder / "project.pieces").exists())
+        self.tasks(2, *self.import_of(volume, "project"))
+        # The voxels are another file, which the manifest does not know; the pieces do.
+        data = self.folder / "volume.raw"
+        data.write_bytes(struct.pack("B", 77) + data.read_bytes()[1:])
+        self.check_refused("gather", self.folder / "project.pieces", status=1, says=["piece-0", "another file"])
+        self.assertFalse((self.folder / "project").exists())
+        self.assertFalse((self.folder / "project.part").exists())
+        manifest = json.loads((self.folder / "project.pieces" / "manifest.json").read_text())
+        self.assertEqual((manifest["shvr_pieces"], manifest["tasks"]), (1, 2))
+
+
+if __name__ == "__main__":
+    unittest.main()
