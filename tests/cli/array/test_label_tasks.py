@@ -1,9 +1,13 @@
 """shvr label --task: components joined across the borders of tasks have the numbers of one process."""
 import signal
+import subprocess
 import unittest
+from pathlib import Path
 
-from harness import IS_SLOW, Volume
+from harness import ENVIRONMENT, IS_SLOW, SHVR, Volume
 from tasks import SplitTest
+
+LOCAL = Path(__file__).resolve().parents[3] / "tools" / "slurm" / "local"
 
 
 class LabelTasks(SplitTest):
@@ -78,6 +82,25 @@ class LabelTasks(SplitTest):
             self.kill(*self.label(volume, "labels.nrrd"), "--task", "1/3", number=number)
         self.tasks(3, *self.label(volume, "labels.nrrd"), order=(1,))
         self.gather(output)
+        self.check(*self.label(volume, "whole.nrrd"))
+        self.assert_equal_files(output, self.folder / "whole.nrrd")
+
+    def test_xargs_runs_the_tasks_without_slurm(self):
+        volume = Volume.noise((9, 11, 20), seed=6).write(self.folder)
+        output = self.folder / "labels.nrrd"
+        command = [LOCAL, "3", "2", output, *map(str, self.label(volume, output.name))]
+        # Task 1 fails at first: the others run, nothing is joined, and the same line runs what is missing.
+        failing = self.folder / "shvr-that-fails"
+        failing.write_text('#!/bin/sh\ncase "$*" in *"--task 1/3"*) mkdir "$0.failed" 2> /dev/null && exit 1; esac\n'
+                           f'exec {Path(SHVR).resolve()} "$@"\n')
+        failing.chmod(0o755)
+        environment = {**ENVIRONMENT, "SHVR": str(failing)}
+        failed = subprocess.run(command, env=environment, capture_output=True, text=True)
+        self.assertNotEqual(failed.returncode, 0)
+        self.assertFalse(output.exists())
+        self.assertEqual(self.gather(output, status=1)["missing"], ["1/3"])
+        done = subprocess.run(command, env=environment, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
         self.check(*self.label(volume, "whole.nrrd"))
         self.assert_equal_files(output, self.folder / "whole.nrrd")
 
