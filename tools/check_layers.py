@@ -65,7 +65,7 @@ MAY_INCLUDE = {
     "engine/device": "engine/base engine/volume engine/gpu engine/passes engine/look engine/bricks engine/annotation "
     "engine/annotation/trace engine/annotation/work shaders",
     "engine/picture": "engine/base engine/volume engine/passes engine/look engine/annotation/work engine/session engine/device",
-    "engine/live": "engine/touch engine/volume engine/passes engine/look engine/annotation engine/annotation/trace "
+    "engine/live": "engine/base engine/touch engine/volume engine/passes engine/look engine/annotation engine/annotation/trace "
     "engine/annotation/work engine/session engine/picture shaders",
     "haptics": "engine/base engine/touch",
     "haptics/hid": "engine/base haptics",
@@ -79,16 +79,16 @@ MAY_INCLUDE = {
     "engine/workbench/curves": "engine/look engine/session",
     "engine/workbench/touch": "engine/base engine/look engine/annotation/trace engine/annotation/work engine/session "
     "engine/live haptics haptics/devices",
-    "engine/workbench/models": "engine/base engine/volume engine/annotation engine/annotation/work engine/session "
+    "engine/workbench/models": "engine/base engine/remote engine/volume engine/annotation engine/annotation/work engine/session "
     "engine/jobs engine/live haptics haptics/devices engine/workbench/appearance engine/workbench/touch",
-    "engine/workbench/actions": "engine/base engine/annotation/operations engine/annotation/script engine/session engine/tasks engine/workbench/models",
+    "engine/workbench/actions": "engine/base engine/remote engine/annotation/operations engine/annotation/script engine/session engine/tasks engine/workbench/models",
     "engine/workbench/lists": "engine/base engine/look engine/annotation/trace engine/session engine/live "
     "engine/workbench/models engine/workbench/actions",
     "engine/workbench/sight": "engine/base engine/look engine/annotation/trace engine/session engine/workbench/models "
     "engine/workbench/lists",
     "engine/workbench/edits": "engine/session haptics engine/workbench/touch engine/workbench/models "
     "engine/workbench/actions",
-    "engine/workbench/bindings": "engine/base engine/session engine/workbench/models engine/workbench/actions "
+    "engine/workbench/bindings": "engine/base engine/remote engine/session engine/workbench/models engine/workbench/actions "
     "engine/workbench/sight engine/workbench/edits engine/workbench/appearance",
     "engine/workbench/words": "engine/base engine/annotation/trace engine/annotation/work engine/session "
     "engine/workbench/models engine/workbench/bindings",
@@ -103,7 +103,7 @@ MAY_INCLUDE = {
     "engine/workbench/words engine/workbench/document engine/workbench/desk",
     "engine/workbench": "engine/base engine/workbench/actions engine/workbench/lists engine/workbench/desk "
     "engine/workbench/services",
-    "ui/files": "engine/base engine/formats",
+    "ui/files": "engine/base engine/remote engine/formats",
     "ui/panels": "engine/base engine/session engine/workbench/appearance engine/workbench/curves engine/workbench/models "
     "engine/workbench/actions engine/workbench/lists engine/workbench/sight engine/workbench/edits "
     "engine/workbench/bindings",
@@ -114,7 +114,7 @@ MAY_INCLUDE = {
     "ui/panels/touch": "engine/workbench/models engine/workbench/lists engine/workbench/edits engine/workbench/bindings "
     "engine/workbench/words ui/panels",
     "ui": "engine/base engine/gpu engine/live haptics engine/workbench engine/workbench/models engine/workbench/sight "
-    "engine/workbench/edits engine/workbench/bindings ui/panels",
+    "engine/workbench/edits engine/workbench/bindings ui/files ui/panels",
     "tests": "*",
     "tests/reference": "engine/annotation engine/annotation/operations engine/annotation/trace",
     "tools/report": "engine/base engine/pages",

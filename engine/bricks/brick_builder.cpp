@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/base/error.h"
+#include "engine/base/waits/waits.h"
 #include "engine/bricks/code_rows.h"
 
 namespace shvr {
@@ -353,9 +354,14 @@ void build_bricks(const VolumeSource& source, const IntensityWindow& window, int
 {
     static_cast<void>(voxel_count(source.info()));
     Pipeline pipeline(source, window, std::max(1, threads));
+    const std::function<bool()> waits_are_over = waits_of_this_thread();
     std::vector<std::jthread> workers;
     try {
-        for (int i = 0; i < std::max(1, threads); ++i) workers.emplace_back([&] { pipeline.work(); });
+        for (int i = 0; i < std::max(1, threads); ++i)
+            workers.emplace_back([&] {
+                const WaitsUntil waits(waits_are_over);
+                pipeline.work();
+            });
         for (int64_t row = 0; row < pipeline.row_count(); ++row) {
             const BrickRow& built = pipeline.wait_for_row();
             for (int i = 0; i < built.count; ++i) take(built.first + glm::ivec3(i, 0, 0), built.bricks[size_t(i)]);

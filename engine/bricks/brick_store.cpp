@@ -31,22 +31,29 @@ void give_way()
 BrickStore::BrickStore(const VolumeSource& source, const IntensityWindow& window, uint64_t budget_bytes, int threads)
     : source_(source), window_(window), own_maker_(source, window)
 {
-    const int loaders = std::max(1, threads);
-    // At least two bricks per loader: one being loaded, and one waiting to be taken.
-    max_bricks_ = std::max<uint64_t>(budget_bytes / BRICK_BYTES, 2 * uint64_t(loaders));
-    for (int i = 0; i < loaders; ++i) {
-        loaders_.emplace_back([this](std::stop_token stop) {
-            give_way();
-            load(std::move(stop));
-        });
-    }
+    max_bricks_ = budget_bytes / BRICK_BYTES;
+    const std::scoped_lock lock(mutex_);
+    start_loaders(std::max(1, threads));
 }
 
 BrickStore::~BrickStore()
 {
-    for (std::jthread& loader : loaders_) loader.request_stop();
     const std::scoped_lock lock(mutex_);
+    is_ending_ = true;
+    for (std::jthread& loader : loaders_) loader.request_stop();
     work_.notify_all();
+}
+
+/// Starts loaders until there are `count`. The caller holds the mutex.
+void BrickStore::start_loaders(int count)
+{
+    // At least two bricks per loader: one being loaded, and one waiting to be taken.
+    max_bricks_ = std::max<uint64_t>(max_bricks_, 2 * uint64_t(count));
+    while (!is_ending_ && int(loaders_.size()) < count)
+        loaders_.emplace_back([this](std::stop_token stop) {
+            give_way();
+            load(std::move(stop));
+        });
 }
 
 void BrickStore::want(std::vector<BrickKey> keys)
@@ -208,7 +215,14 @@ void BrickStore::note_failure(const BrickKey& key, const std::string& message)
 
 void BrickStore::load(std::stop_token stop)
 {
-    const WaitsUntil waits([&] { return stop.stop_requested(); });
+    bool is_near = true;  // as far as this thread knows
+    const WaitsUntil waits([&] {
+        if (std::exchange(is_near, false)) {
+            const std::scoped_lock lock(mutex_);
+            start_loaders(FAR_LOADERS);
+        }
+        return stop.stop_requested();
+    });
     BrickMaker maker(source_, window_);
     std::unique_lock lock(mutex_);
     while (!stop.stop_requested()) {

@@ -1,7 +1,8 @@
 #pragma once
 // The host tier of a volume's bricks: loader threads read, decode and cut the wanted bricks, most wanted first, and the
 // store keeps them within a byte budget. Loaders do not start bricks that are no longer wanted. A brick that cannot be
-// read is reported once and never retried.
+// read is reported once and never retried. Loaders that wait for a network (engine/base/waits/waits.h) leave the
+// processor alone: then the store starts more of them, so that more bricks are on their way at once.
 //
 // One thread makes all calls (want, take, get). The store owns the loader threads.
 
@@ -32,6 +33,9 @@ public:
         uint64_t dropped = 0;  ///< bricks that were no longer wanted before a loader started them
         uint64_t failures = 0;
     };
+
+    /// Number of loaders once one of them waits for a network.
+    static constexpr int FAR_LOADERS = 16;
 
     /// The source must outlive the store. The budget is raised to the loaders' minimum if necessary.
     BrickStore(const VolumeSource& source, const IntensityWindow& window, uint64_t budget_bytes, int threads);
@@ -64,6 +68,7 @@ private:
         Texels texels;
         std::list<BrickKey>::iterator place;  ///< in `by_age_`
     };
+    void start_loaders(int count);
     void load(std::stop_token stop);
     std::optional<BrickKey> next();
     Texels make(BrickMaker& maker, const BrickKey& key);
@@ -92,6 +97,7 @@ private:
     std::vector<std::string> messages_;
     Counts counts_;
     uint64_t peak_bricks_ = 0;
+    bool is_ending_ = false;
     std::vector<std::jthread> loaders_;  ///< declared last, so loaders stop before the members they use are destroyed
 };
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/base/error.h"
+#include "engine/base/waits/waits.h"
 #include "engine/volume/grid.h"
 #include "engine/volume/voxel_dispatch.h"
 
@@ -46,7 +47,10 @@ size_t ThresholdBricks::KeyHash::operator()(const Key& key) const
 
 ThresholdBricks::ThresholdBricks(std::shared_ptr<const VolumeSource> source) : source_(std::move(source)) {}
 
-ThresholdBricks::~ThresholdBricks() = default;
+ThresholdBricks::~ThresholdBricks()
+{
+    is_ending_ = true;
+}
 
 bool ThresholdBricks::get_ready(const VoxelBox& box, double threshold)
 {
@@ -57,7 +61,8 @@ bool ThresholdBricks::get_ready(const VoxelBox& box, double threshold)
     std::vector<Size3> bricks = missing(box, threshold);
     if (bricks.empty()) return true;
     reading_is_stale_ = false;
-    reading_ = std::async(std::launch::async, [source = source_, bricks = std::move(bricks), threshold] {
+    reading_ = std::async(std::launch::async, [this, source = source_, bricks = std::move(bricks), threshold] {
+        const WaitsUntil waits([this] { return is_ending_.load(); });
         return read(*source, bricks, threshold);
     });
     return false;

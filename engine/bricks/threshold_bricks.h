@@ -6,6 +6,7 @@
 // Used by one thread; get_ready() reads on a separate thread.
 
 #include <array>
+#include <atomic>
 #include <future>
 #include <memory>
 #include <optional>
@@ -53,8 +54,9 @@ private:
 
     std::shared_ptr<const VolumeSource> source_;
     Bricks kept_;
-    std::future<Bricks> reading_;    ///< in the background; its destructor waits
-    bool reading_is_stale_ = false;  ///< voxels changed since it began
+    bool reading_is_stale_ = false;  ///< voxels changed since `reading_` began
+    std::atomic<bool> is_ending_ = false;
+    std::future<Bricks> reading_;  ///< in the background; its destructor waits, so it is declared last
 };
 
 }  // namespace shvr

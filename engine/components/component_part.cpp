@@ -11,7 +11,7 @@
 #include "engine/base/atomic_writer.h"
 #include "engine/base/machine/machine.h"
 #include "engine/base/text.h"
-#include "engine/base/work_pool.h"
+#include "engine/base/waits/work_pool.h"
 
 // The file: the runs of each slice, then the description (places of these, ranges), and its length in 8 bytes.
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "engine/base/error.h"
-#include "engine/base/work_pool.h"
+#include "engine/base/waits/work_pool.h"
 #include "engine/components/component_part.h"
 #include "engine/components/labelled_range.h"
 #include "engine/volume/voxel_dispatch.h"

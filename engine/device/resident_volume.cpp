@@ -1,6 +1,7 @@
 #include "engine/device/resident_volume.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
@@ -11,6 +12,7 @@
 #include <thread>
 #include <utility>
 
+#include "engine/base/waits/waits.h"
 #include "engine/volume/grid.h"
 
 namespace shvr {
@@ -59,6 +61,7 @@ private:
 
     void build(const IntensityWindow& window, int threads)
     {
+        const WaitsUntil waits([this] { return is_stopped_.load(); });
         Batch batch;
         try {
             build_bricks(*source_, window, threads, [&](const glm::ivec3& brick, const BrickTexels& texels) {
@@ -85,7 +88,7 @@ private:
     std::condition_variable changed_;
     std::deque<Batch> ready_;
     std::exception_ptr failure_;
-    bool is_stopped_ = false;
+    std::atomic<bool> is_stopped_ = false;  ///< set under the mutex
     std::jthread thread_;  ///< declared last, so the thread ends before the members it uses are destroyed
 };
 

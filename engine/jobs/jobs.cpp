@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "engine/base/error.h"
+#include "engine/base/waits/waits.h"
 
 namespace shvr {
 namespace {
@@ -172,6 +173,7 @@ void Jobs::work()
         std::string failure;
         Completion completion;
         try {
+            const WaitsUntil waits([&job] { return job.is_cancelled.load(); });
             completion = job.function(reporter);
         } catch (const Stopped& stopped) {
             if (!job.is_cancelled) failure = stopped.what();

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "engine/annotation/work/work_offsets.h"
+#include "engine/base/waits/waits.h"
 
 namespace shvr {
 
@@ -85,7 +86,13 @@ void RelevanceMirror::run()
             now_ = choice_;
         }
         const uint64_t now_ns = ends_.now_ns();
-        if (now_ && now_->source) turn(now_ns);
+        if (now_ && now_->source) {
+            const WaitsUntil waits([this] {
+                const std::scoped_lock lock(mutex_);
+                return ends_now_ || !choice_ || choice_->source != now_->source;
+            });
+            turn(now_ns);
+        }
         sleep_until(now_ns + TURN_NS);
     }
 }

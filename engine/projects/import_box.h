@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "engine/base/work_pool.h"
+#include "engine/base/waits/work_pool.h"
 #include "engine/projects/import_prepare.h"
 #include "engine/volume/source.h"
 

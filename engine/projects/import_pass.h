@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "engine/base/work_pool.h"
+#include "engine/base/waits/work_pool.h"
 #include "engine/formats/zarr/project.h"
 #include "engine/pieces/task_choice.h"
 #include "engine/projects/import_chunks.h"

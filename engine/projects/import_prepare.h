@@ -17,7 +17,7 @@
 #include <optional>
 #include <span>
 
-#include "engine/base/work_pool.h"
+#include "engine/base/waits/work_pool.h"
 #include "engine/volume/source.h"
 
 namespace shvr {

@@ -15,7 +15,7 @@
 #include "engine/base/file.h"
 #include "engine/base/machine/machine.h"
 #include "engine/base/text.h"
-#include "engine/base/work_pool.h"
+#include "engine/base/waits/work_pool.h"
 
 namespace shvr {
 

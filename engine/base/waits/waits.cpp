@@ -1,6 +1,8 @@
 #include "engine/base/waits/waits.h"
 
+#include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "engine/base/progress.h"
 
@@ -21,6 +23,14 @@ WaitsUntil::WaitsUntil(std::function<bool()> is_over) : is_over_(std::move(is_ov
 WaitsUntil::~WaitsUntil()
 {
     innermost = outer_;
+}
+
+std::function<bool()> waits_of_this_thread()
+{
+    std::vector<std::function<bool()>> conditions;
+    for (const WaitsUntil* scope = innermost; scope != nullptr; scope = scope->outer_)
+        conditions.push_back(scope->is_over_);
+    return [conditions] { return std::ranges::any_of(conditions, [](const auto& is_over) { return is_over(); }); };
 }
 
 void end_all_waits_by(const std::atomic<bool>& flag)

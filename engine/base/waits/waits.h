@@ -17,9 +17,14 @@ public:
 
 private:
     friend bool wait_is_over();
+    friend std::function<bool()> waits_of_this_thread();
     std::function<bool()> is_over_;
     const WaitsUntil* outer_;
 };
+
+/// Returns a function that states whether waits of this thread are over. Threads that work on its behalf pass it to a
+/// WaitsUntil of their own. It must not be called after the objects that this thread's conditions use are gone.
+std::function<bool()> waits_of_this_thread();
 
 /// Makes the waits of all threads end once `flag` is set. The flag must live until the program ends.
 void end_all_waits_by(const std::atomic<bool>& flag);

@@ -1,4 +1,4 @@
-#include "engine/base/work_pool.h"
+#include "engine/base/waits/work_pool.h"
 
 #include <atomic>
 #include <chrono>

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "engine/base/error.h"
+#include "engine/base/waits/waits.h"
 #include "engine/bricks/brick_store.h"
 #include "shaders/bricks.h"
 #include "tests/support/volume_files.h"
@@ -219,4 +220,50 @@ TEST_CASE("many loaders, and an owner who keeps changing their mind: what comes 
     }
     // The owner's own brick may be added to those that the loaders hold.
     CHECK(store.peak_bytes() <= 7 * BRICK_BYTES);
+}
+
+TEST_CASE("a store whose loaders wait for a network reads more bricks at once")
+{
+    /// Answers once FAR_LOADERS bricks are being read.
+    class Far : public Row {
+    public:
+        using Row::Row;
+        void read(const VoxelBox& box, std::span<std::byte> voxels) const override
+        {
+            ++reading;
+            while (reading < BrickStore::FAR_LOADERS) {
+                stop_if_wait_is_over();
+                std::this_thread::yield();
+            }
+            Row::read(box, voxels);
+        }
+        mutable std::atomic<int> reading = 0;
+    };
+    const Far source(BrickStore::FAR_LOADERS);
+    BrickStore store(source, WINDOW, 64 * BRICK_BYTES, 1);
+    std::vector<BrickKey> keys;
+    for (int x = 0; x < BrickStore::FAR_LOADERS; ++x) keys.push_back({0, {x, 0, 0}});
+    store.want(keys);
+    size_t taken = 0;
+    while (taken < keys.size() && store.wait()) taken += store.take(keys.size()).size();
+    CHECK(taken == keys.size());
+    CHECK(source.reading == BrickStore::FAR_LOADERS);
+}
+
+TEST_CASE("a store ends while its loaders wait for a network that never answers")
+{
+    class Silent : public Row {
+    public:
+        using Row::Row;
+        void read(const VoxelBox&, std::span<std::byte>) const override
+        {
+            ++reading;
+            for (;;) stop_if_wait_is_over();
+        }
+        mutable std::atomic<int> reading = 0;
+    };
+    const Silent source(4);
+    BrickStore store(source, WINDOW, 64 * BRICK_BYTES, 2);
+    store.want({{0, {0, 0, 0}}, {0, {1, 0, 0}}, {0, {2, 0, 0}}});
+    while (source.reading < 3) std::this_thread::yield();
 }

@@ -3,7 +3,8 @@
 // others. The first exception in a batch drops its tasks that have not started, and is rethrown in the waiting thread.
 //
 // One thread owns the pool: it starts batches and waits for them. A task may use anything that outlives its batch;
-// `worker` (0 ... workers() - 1) selects its own scratch memory.
+// `worker` (0 ... workers() - 1) selects its own scratch memory. Waits of tasks (waits/waits.h) end when waits of the
+// thread that made the pool are over.
 
 #include <chrono>
 #include <condition_variable>
@@ -47,6 +48,7 @@ private:
 
     static constexpr std::chrono::milliseconds POLL_INTERVAL{50};
 
+    std::function<bool()> waits_are_over_;  ///< whether waits of the thread that made the pool are over
     std::function<void()> poll_;
     std::function<void()> before_task_;
     std::chrono::steady_clock::time_point polled_ = std::chrono::steady_clock::now();

@@ -1,6 +1,8 @@
-#include "engine/base/work_pool.h"
+#include "engine/base/waits/work_pool.h"
 
 #include <algorithm>
+
+#include "engine/base/waits/waits.h"
 
 namespace shvr {
 
@@ -16,7 +18,7 @@ public:
 };
 
 WorkPool::WorkPool(int threads, std::function<void()> poll, std::function<void()> before_task)
-    : poll_(std::move(poll)), before_task_(std::move(before_task))
+    : waits_are_over_(waits_of_this_thread()), poll_(std::move(poll)), before_task_(std::move(before_task))
 {
     for (int worker = 0; worker < std::max(1, threads); ++worker) {
         threads_.emplace_back([this, worker] { work(worker); });
@@ -78,6 +80,7 @@ void WorkPool::wait(const std::shared_ptr<Batch>& batch)
 
 void WorkPool::work(int worker)
 {
+    const WaitsUntil waits(waits_are_over_);
     std::unique_lock lock(mutex_);
     for (;;) {
         begun_.wait(lock, [&] { return is_ending_ || !urgent_.empty() || !normal_.empty(); });
