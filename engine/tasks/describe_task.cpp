@@ -42,7 +42,9 @@ DescribeResult run(const DescribeTask& task, ProgressReporter& reporter)
         }
         opened.statistics = measure(*opened.source, opening.measure);
         opened.warnings = warnings_of(opened.statistics);
-        if (std::string archived = archived_project(task.input); !archived.empty())
+        // Opening an address has asked for that already, and warns of it.
+        const bool is_remote = leads_to_network(task.input);
+        if (std::string archived = is_remote ? "" : archived_project(task.input); !archived.empty())
             opened.losses.push_back(std::move(archived));
     } else {
         opened = open_session(task.input, task.settings, opening);

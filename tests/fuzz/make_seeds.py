@@ -492,6 +492,30 @@ def make_zarr3():
     seed("zarr_shard", "far", b"\0" + bytes(16) + index((1 << 62, 1 << 62), (0, 1 << 40), *[none] * 6))
 
 
+def make_remote_store():
+    """Servers: what they have, and before that what they answer instead (remote_store.cpp)."""
+    for name in ["image_04", "type_u1", "series", "chunks_larger", "claims"]:
+        if name == "claims":
+            whole = [(".zarray", zarray(shape=[1 << 20] * 3, chunks=[1 << 20] * 3)), ("0.0.0", "v")]
+            seed("remote_store", "claims_chunk", *whole)
+        else:
+            seed("remote_store", name, *packed(ZARR / name))
+    for name in ["shard_start", "shard_sparse", "image_tczyx"]:
+        seed("remote_store", f"v3_{name}", *packed(ZARR3 / name))
+    shard = packed(ZARR3 / "shard_sparse")
+    chunk = next(name for name, _ in shard if name.startswith("c/"))
+    answers = {
+        "refuses": f"{chunk} 403 - - -\n", "hides": f"{chunk} 404 - - -\n", "redirects": f"{chunk} 302 - - - ../zarr.json\n",
+        "leads_in_circles": f"{chunk} 307 - - - {chunk}\n", "leads_elsewhere": f"{chunk} 301 - - - file:///etc/passwd\n",
+        "is_unreached": f"{chunk} 0 - - - unreached\n", "breaks_off": f"{chunk} 0 - - - -\n", "is_busy": f"{chunk} 503 - - -\n",
+        "sends_other_parts": f"{chunk} 206 7 - -\n", "states_too_much": f"{chunk} 206 - 9223372036854775807 -\n",
+        "states_too_little": f"{chunk} 206 - 1 -\n", "states_less_than_nothing": f"{chunk} 206 -5 -7 -\n",
+        "says_unchanged": f"{chunk} 304 - - \"1\"\n", "sends_all": f"{chunk} 200 - - -\n",
+        "has_no_metadata": "zarr.json 403 - - -\n.zattrs 403 - - -\n"}
+    for name, lines in answers.items():
+        seed("remote_store", name, lines.rstrip("\n"), *shard)
+
+
 def make_ozx():
     for name in ["image_04", "image_group_scale", "image_floor", "image_flat_levels", "shard_end", "shard_start",
                  "shard_small", "series", "zip_twice", "zip_climbing", "zip_two_images", "zip_encrypted", "zip_bzip2",
@@ -739,6 +763,7 @@ def main():
     make_pictures()
     make_zarr()
     make_zarr3()
+    make_remote_store()
     make_ozx()
     make_label_looks()
     make_project()

@@ -13,6 +13,7 @@
 #include "engine/base/file.h"
 #include "engine/base/text.h"
 #include "engine/formats/open_volume.h"
+#include "engine/formats/zarr/project_bytes.h"
 #include "engine/formats/zarr/store/zarr_json.h"
 #include "engine/formats/zarr/store/zarr_store.h"
 #include "engine/remote/address.h"
@@ -186,7 +187,11 @@ std::string to_text(const ProjectRecord& record)
 
 ProjectRecord read_project_record(const Path& file)
 {
-    const JsonDocument document = read_zarr_json(file, MAX_RECORD_BYTES);
+    return project_record_of(read_zarr_json(file, MAX_RECORD_BYTES));
+}
+
+ProjectRecord project_record_of(const JsonDocument& document)
+{
     const JsonNode root = document.root();
     root["shvr_volume"].whole(VERSION, VERSION);
     ProjectRecord record;
@@ -314,12 +319,20 @@ void split_list(const Path& file, std::span<const std::byte> content, ProjectTab
 
 ProjectTable read_project_table(const Path& file, const ProjectTable& expected)
 {
-    const auto longest = int64_t(HEADER_BYTES + ZSTD_compressBound(size_t(MAX_TABLE_BYTES)));
-    const std::vector<std::byte> bytes = read_file(file, longest);
+    return project_table_of(read_file(file, most_table_bytes()), file, expected);
+}
+
+int64_t most_table_bytes()
+{
+    return int64_t(HEADER_BYTES + ZSTD_compressBound(size_t(MAX_TABLE_BYTES)));
+}
+
+ProjectTable project_table_of(std::span<const std::byte> bytes, const Path& file, const ProjectTable& expected)
+{
     if (bytes.size() < HEADER_BYTES || std::memcmp(bytes.data(), MAGIC, 8) != 0) {
         fail(file.string(), ": does not begin with ", MAGIC, "; expected a table of a project");
     }
-    const std::span<const std::byte> frame = std::span(bytes).subspan(HEADER_BYTES);
+    const std::span<const std::byte> frame = bytes.subspan(HEADER_BYTES);
     ProjectTable table = expected;
     const auto is_header = [&](bool is_sparse) {
         table.is_sparse = is_sparse;
@@ -337,7 +350,7 @@ ProjectTable read_project_table(const Path& file, const ProjectTable& expected)
     std::vector<std::byte> content(size_t(decoded_bytes), std::byte{0});
     const size_t made = ZSTD_decompress(content.data(), content.size(), frame.data(), frame.size());
     uint64_t checksum = 0;
-    const std::span<const std::byte> header = std::span(bytes).first(HEADER_BYTES - sizeof(checksum));
+    const std::span<const std::byte> header = bytes.first(HEADER_BYTES - sizeof(checksum));
     std::memcpy(&checksum, bytes.data() + header.size(), sizeof(checksum));
     if (made != content.size() || checksum != checksum_of(header, content)) {
         fail(file.string(), ": is damaged; expected a table that matches its checksum");

@@ -5,6 +5,8 @@
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
+#include "engine/formats/zarr/project_bytes.h"
+#include "engine/formats/zarr/store/zarr_json.h"
 #include "engine/volume/source.h"
 #include "engine/volume/voxel_numbers.h"
 #include "shaders/bricks.h"
@@ -90,6 +92,87 @@ void check_arrays(const fs::path& folder, const ProjectRecord& record, std::vect
 
 }  // namespace
 
+namespace {
+
+/// Larger tables of a project at an address are not read: they would take longer than what they save.
+constexpr int64_t MAX_REMOTE_TABLE_BYTES = int64_t{64} << 20;
+constexpr int64_t MAX_REMOTE_RECORD_BYTES = int64_t{1} << 20;
+
+ProjectTable checksums_for(const ZarrVolume& volume, int level)
+{
+    return {.kind = "checksum", .level = level, .element_bytes = sizeof(uint64_t), .counts = volume.counts()};
+}
+
+/// Reads a table below an address; fails if it is missing, too large or damaged.
+ProjectTable remote_table(const ZarrPlace& place, const fs::path& name, const ProjectTable& expected)
+{
+    const std::optional<std::vector<std::byte>> bytes =
+        place.store->read(place.key(name.string()), MAX_REMOTE_TABLE_BYTES);
+    const fs::path file = place.path_of(name.string());
+    if (!bytes) fail(file.string(), ": is missing; expected a table of the project");
+    return project_table_of(*bytes, file, expected);
+}
+
+void take_info(const VolumeInfo& known, VolumeInfo& info)
+{
+    info.spacing = known.spacing;
+    info.unit = known.unit;
+    info.spacing_from = known.spacing_from;
+    info.unit_from = known.unit_from;
+    info.directions = known.directions;
+    info.origin = known.origin;
+    info.frame = known.frame;
+    info.warnings = known.warnings;
+}
+
+}  // namespace
+
+ProjectKnowledge read_remote_knowledge(const ZarrPlace& place, VolumeInfo& info, std::vector<ZarrVolume>& volumes)
+{
+    ProjectKnowledge knowledge;
+    if (!place.has(PROJECT_RECORD)) return knowledge;
+    std::vector<std::string> damage{
+        sentence(place.path_of("").string(),
+                 ": is a project on another machine, of which only the image is read; expected its folder, for "
+                 "annotations and looks: copy it to this machine")};
+    try_to(
+        [&] {
+            ProjectRecord record = project_record_of(read_zarr_json(place, PROJECT_RECORD, MAX_REMOTE_RECORD_BYTES));
+            const bool fits =
+                record.info.size == info.size && record.info.type == info.type && record.levels >= int(volumes.size());
+            if (!fits)
+                fail(place.path_of(PROJECT_RECORD).string(), ": describes another volume; expected that of this image");
+            knowledge.record = std::move(record);
+        },
+        damage);
+    if (knowledge.record) {
+        take_info(knowledge.record->info, info);
+        std::vector<ZarrWant> wants;
+        for (int level = 0; level < int(volumes.size()); ++level)
+            for (const fs::path& name : {ranges_path({}, level), checksums_path({}, level)})
+                wants.push_back({.key = place.key(name.string()), .bytes = MAX_REMOTE_TABLE_BYTES});
+        place.store->prepare(wants);
+        knowledge.ranges.resize(volumes.size());
+        for (int level = 0; level < int(volumes.size()); ++level) {
+            const auto index = size_t(level);
+            try_to(
+                [&] {
+                    knowledge.ranges[index] =
+                        remote_table(place, ranges_path({}, level), table_for(knowledge.record->info, level));
+                },
+                damage);
+            try_to(
+                [&] {
+                    volumes[index].expect(stored_chunks_of(
+                        remote_table(place, checksums_path({}, level), checksums_for(volumes[index], level))));
+                },
+                damage);
+        }
+    }
+    info.warnings.insert(info.warnings.end(), damage.begin(), damage.end());
+    return knowledge;
+}
+
 ProjectKnowledge read_project_knowledge(const fs::path& folder, VolumeInfo& info, std::vector<ZarrVolume>& volumes)
 {
     ProjectKnowledge knowledge;
@@ -107,17 +190,7 @@ ProjectKnowledge read_project_knowledge(const fs::path& folder, VolumeInfo& info
             knowledge.record = std::move(record);
         },
         damage);
-    if (knowledge.record) {
-        const VolumeInfo& known = knowledge.record->info;
-        info.spacing = known.spacing;
-        info.unit = known.unit;
-        info.spacing_from = known.spacing_from;
-        info.unit_from = known.unit_from;
-        info.directions = known.directions;
-        info.origin = known.origin;
-        info.frame = known.frame;
-        info.warnings = known.warnings;
-    }
+    if (knowledge.record) take_info(knowledge.record->info, info);
     knowledge.ranges.resize(volumes.size());
     for (int level = 0; level < int(volumes.size()); ++level) {
         const auto index = size_t(level);
@@ -127,10 +200,7 @@ ProjectKnowledge read_project_knowledge(const fs::path& folder, VolumeInfo& info
         try_to(
             [&] {
                 const ProjectTable table =
-                    read_project_table(checksums_path(folder, level), {.kind = "checksum",
-                                                                       .level = level,
-                                                                       .element_bytes = sizeof(uint64_t),
-                                                                       .counts = volumes[index].counts()});
+                    read_project_table(checksums_path(folder, level), checksums_for(volumes[index], level));
                 volumes[index].expect(stored_chunks_of(table));
             },
             damage);

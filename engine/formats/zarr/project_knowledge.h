@@ -21,6 +21,10 @@ struct ProjectKnowledge {
 ProjectKnowledge read_project_knowledge(const std::filesystem::path& folder, VolumeInfo& info,
                                         std::vector<ZarrVolume>& volumes);
 
+/// The same for an image at an address, whose tables are requested in one round; large ones are not read. Tables that
+/// cannot be read are left out with a warning, and so is the annotation of a project.
+ProjectKnowledge read_remote_knowledge(const ZarrPlace& place, VolumeInfo& info, std::vector<ZarrVolume>& volumes);
+
 /// Returns the value range of a brick, which must lie inside the level; null if the range is unknown.
 std::optional<ValueRange> range_of(const ProjectKnowledge& knowledge, const VolumeInfo& info, int level,
                                    const Size3& brick);

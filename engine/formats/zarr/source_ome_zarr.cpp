@@ -1,3 +1,5 @@
+#include "engine/formats/zarr/source_ome_zarr.h"
+
 // Opens OME-Zarr images, versions 0.1 to 0.4 (Zarr version 2) and 0.5 (Zarr version 3), and bare Zarr arrays, in a
 // local folder, an archive or below an address (zarr_store.h). A project is such an image with an additional folder
 // shvr/ (project.h) that holds ranges and statistics.
@@ -340,7 +342,8 @@ std::unique_ptr<VolumeSource> open_image(const ZarrPlace& place, const ZarrNode&
     info.warnings = image.warnings;
     apply_spacing(info, image.levels[0].scale, image.unit, "um");
     read_ome_place(node.attributes(), image.levels[0].translation, info);
-    ProjectKnowledge knowledge = read_project_knowledge(folder, info, volumes);
+    ProjectKnowledge knowledge = place.store->is_remote() ? read_remote_knowledge(place, info, volumes)
+                                                          : read_project_knowledge(folder, info, volumes);
     info.warnings.insert(info.warnings.end(), left_out.begin(), left_out.end());
     if (std::string offline = offline_warning(*place.store); !offline.empty())
         info.warnings.push_back(std::move(offline));
@@ -458,17 +461,21 @@ std::unique_ptr<VolumeSource> open_group(const ZarrPlace& place, const ZarrNode&
 std::unique_ptr<VolumeSource> open_ome_zarr(const fs::path& path, const OpenOptions& options)
 {
     const std::optional<ZarrPlace> place = zarr_place(path);
-    if (!place) return nullptr;
-    const std::optional<ZarrNode> node = read_zarr_node(*place);
+    return place ? open_ome_zarr_at(*place, path, options) : nullptr;
+}
+
+std::unique_ptr<VolumeSource> open_ome_zarr_at(const ZarrPlace& place, const fs::path& path, const OpenOptions& options)
+{
+    const std::optional<ZarrNode> node = read_zarr_node(place);
     std::error_code ignored;
     if (!node && fs::is_directory(path, ignored)) return nullptr;
-    if (!node && place->store->is_remote())
+    if (!node && place.store->is_remote())
         fail(path.string(), ": has no zarr.json, .zattrs, .zgroup or .zarray; expected the address of an OME-Zarr");
-    if (!node) refuse_archive(path, *place);
-    if (node->is_array) return open_array(*place, node->version, options);
+    if (!node) refuse_archive(path, place);
+    if (node->is_array) return open_array(place, node->version, options);
     check_ome_version(*node);
-    if (node->ome()["multiscales"].exists()) return open_image(*place, *node, options);
-    return open_group(*place, *node, options);
+    if (node->ome()["multiscales"].exists()) return open_image(place, *node, options);
+    return open_group(place, *node, options);
 }
 
 }  // namespace shvr

@@ -44,6 +44,11 @@ class StoreServer:
     def paths(self):
         return [path for path, _ in self.requests]
 
+    def read(self, key):
+        """The bytes of an object; None if there is no such object."""
+        path = self.folder / key
+        return path.read_bytes() if path.is_file() else None
+
 
 class StoreHandler(http.server.BaseHTTPRequestHandler):
     protocol_version = "HTTP/1.1"
@@ -82,8 +87,7 @@ class StoreHandler(http.server.BaseHTTPRequestHandler):
         self.wfile.write(body)
 
     def content(self):
-        path = self.store.folder / unquote(self.path.split("?")[0]).lstrip("/")
-        return path.read_bytes() if path.is_file() else None
+        return self.store.read(unquote(self.path.split("?")[0]).lstrip("/"))
 
     def send_object(self):
         body = self.content()
@@ -135,7 +139,7 @@ def endless_headers(handler):
 
 def too_short(handler):
     """Fewer bytes than the header states."""
-    body = handler.content()
+    body = handler.content() or b""
     handler.send_response(200)
     handler.send_header("Content-Length", str(len(body) + 10))
     handler.end_headers()

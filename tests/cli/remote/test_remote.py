@@ -120,6 +120,40 @@ class Equal(RemoteTest):
                       self.check("info", server.address("x.zarr")).stderr)
 
 
+class Project(RemoteTest):
+    # Kind (Servers): a sparse project behind an address, whose tables say what is empty and need not be asked for
+    def test_a_project_tells_what_is_empty(self):
+        side = 160
+        voxels = bytearray(side ** 3)
+        for z in range(20, 40):
+            for y in range(20, 40):
+                begin = (z * side + y) * side
+                voxels[begin + 20:begin + 40] = bytes(range(100, 120))
+        (self.folder / "scan.raw").write_bytes(voxels)
+        (self.folder / "served").mkdir()
+        project = self.folder / "served" / "x.zarr"
+        self.check("import", self.folder / "scan.raw", project, "--raw", f"{side}x{side}x{side}:uint8", "--spacing", "1,1,1",
+                   "--unit", "um", "--quiet")
+        local = self.check_json("info", project)
+        missing = {}
+        for has_tables in (True, False):
+            if not has_tables:
+                shutil.rmtree(project / "shvr")
+            server = self.serve()
+            told = run("info", server.address("x.zarr"), "--json", environment={"SHVR_REMOTE_CACHE_MIB": "0"})
+            self.assertEqual(told.returncode, 0, told.stderr)
+            for key in ("min", "max", "mean", "size", "spacing", "unit"):
+                self.assertEqual(json.loads(told.stdout)[key], local[key])
+            self.assertEqual(has_tables, "is a project on another machine" in told.stderr, told.stderr)
+            picture = self.folder / f"{has_tables}.pfm"
+            self.check("render", server.address("x.zarr"), "-o", picture, "--size", "48x32", "--quiet")
+            chunks = [path for path in server.paths() if path.startswith("/x.zarr/0/") and "/." not in path]
+            missing[has_tables] = [path for path in chunks if not (self.folder / "served" / path.lstrip("/")).is_file()]
+        self.assertEqual(missing[True], [])
+        self.assertGreater(len(missing[False]), 0)
+        self.assertEqual((self.folder / "True.pfm").read_bytes(), (self.folder / "False.pfm").read_bytes())
+
+
 class Missing(RemoteTest):
     # Kind (Servers): chunks that are missing, refused, removed and changed meanwhile, and what commands make of each
     def test_missing_and_forbidden_chunks(self):

@@ -24,6 +24,8 @@ using Clock = std::chrono::steady_clock;
 using State = RemoteObject::State;
 
 constexpr std::array<std::string_view, 4> METADATA_NAMES{"zarr.json", ".zattrs", ".zgroup", ".zarray"};
+/// Whether an image is a project is asked at each opening, so it is asked together with the metadata of the root.
+constexpr std::string_view PROJECT_KEY = "shvr/volume.json";
 /// Metadata older than this is requested again, to notice that a volume was removed.
 constexpr std::chrono::seconds METADATA_AGE{30};
 constexpr int64_t PREPARED_BYTES = int64_t{128} << 20;
@@ -89,10 +91,12 @@ public:
     void begin() const
     {
         std::vector<std::string> keys(METADATA_NAMES.begin(), METADATA_NAMES.end());
+        keys.emplace_back(PROJECT_KEY);
         fetch_metadata(keys);
         const std::scoped_lock lock(mutex_);
         std::string refusal;
-        for (const std::string& key : keys) {
+        for (const std::string_view name : METADATA_NAMES) {
+            const std::string key(name);
             const RemoteObject& object = metadata_.at(key).object;
             if (object.state == State::failed) fail(object.failure);
             if (object.state == State::found) return;
