@@ -10,5 +10,7 @@ namespace shvr {
 
 /// Reads the voxels of a box inside the volume. Fails if the voxels cannot be read.
 DensityBox densities_in(const VolumeSource& source, const DensityField& offsets, const VoxelBox& box);
+/// Adds the offsets of the voxels in `box`, whose intensities are in `densities`.
+void add_offsets(const DensityField& offsets, const VoxelBox& box, DensityBox& densities);
 
 }  // namespace shvr

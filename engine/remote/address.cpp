@@ -158,6 +158,12 @@ std::string take_query(const std::string& text)
     return address;
 }
 
+std::string url_without_query(const std::string& text)
+{
+    const std::string scheme = is_address(text) ? lower_case(text.substr(0, text.find("://"))) : std::string();
+    return scheme == "http" || scheme == "https" ? text.substr(0, text.find_first_of("?#")) : text;
+}
+
 std::string query_for(const Address& address)
 {
     return queries().find(url_of(address));

@@ -36,6 +36,8 @@ Address parse_address(const std::string& text);
 /// Removes the query of an http or https address, and remembers it in this process for requests to that address and to
 /// paths below it. Returns other texts unchanged.
 std::string take_query(const std::string& text);
+/// Returns the text of an address up to its query or fragment, which is forgotten; other texts unchanged.
+std::string url_without_query(const std::string& text);
 /// Returns the query remembered for an address or for a path above it; empty if there is none.
 std::string query_for(const Address& address);
 

@@ -14,6 +14,7 @@
 #include "engine/look/session_color.h"
 #include "engine/projects/import_files.h"
 #include "engine/remote/address.h"
+#include "engine/session/first_look.h"
 #include "engine/session/label_looks.h"
 #include "engine/session/picture_session.h"
 #include "engine/session/session_keys.h"
@@ -176,7 +177,8 @@ std::pair<JsonDocument, UnmeasuredSession> open_unmeasured(const fs::path& path,
         session.journal_path = journal_beside(picture->project);
     }
     opened.source = open_source(session);
-    if (session_file.empty() && !picture) {
+    // Opening an address has asked for that already, and warns of it.
+    if (session_file.empty() && !picture && !leads_to_network(path)) {
         if (std::string sentence = archived_project(path); !sentence.empty()) opened.losses.push_back(sentence);
     }
     // For a project with a valid record, the volume's hash is known without reading voxels.
@@ -206,10 +208,25 @@ void expect_range_of_points(const Session& session, const VolumeStatistics& stat
          ", in which a transfer function can be made: scale them down, or give one with --tf");
 }
 
-}  // namespace
+/// Measures a volume by its finest level that is small.
+VolumeStatistics measure_at_first_look(const VolumeSource& source, const MeasureOptions& options)
+{
+    if (source.statistics()) return measure(source, options);
+    for (int level = 0; level < source.levels(); ++level) {
+        const glm::dvec3 size(size_of_level(source.info().size, level));
+        if (size.x * size.y * size.z > double(MAX_VOXELS_OF_FIRST_LOOK)) continue;
+        if (level == 0) break;
+        VolumeStatistics statistics = measure_level(source, level, options);
+        statistics.measured_level = level;
+        return statistics;
+    }
+    return measure(source, options);
+}
 
-OpenedSession open_session(const fs::path& path, const std::vector<std::string>& settings,
-                           const OpeningOptions& options)
+using Measure = VolumeStatistics (*)(const VolumeSource& source, const MeasureOptions& options);
+
+OpenedSession open_measured(const fs::path& path, const std::vector<std::string>& settings,
+                            const OpeningOptions& options, Measure measure_remote)
 {
     auto [document, unmeasured] = open_unmeasured(path, settings);
     if (options.before_reading) options.before_reading(unmeasured.session, *unmeasured.source);
@@ -221,7 +238,8 @@ OpenedSession open_session(const fs::path& path, const std::vector<std::string>&
                          unmeasured.pictured,
                          unmeasured.removed};
     const HashedSource hashed(*opened.source);
-    opened.statistics = measure(hashed, options.measure);
+    opened.statistics = leads_to_network(opened.session.volume_path) ? measure_remote(hashed, options.measure)
+                                                                     : measure(hashed, options.measure);
     if (opened.session.volume_hash.empty()) opened.session.volume_hash = hashed.hash();
     opened.warnings = warnings_of(opened.statistics);
     for (std::string& warning : take_label_looks(opened.session.mask_path, opened.session.groups))
@@ -238,6 +256,20 @@ OpenedSession open_session(const fs::path& path, const std::vector<std::string>&
                                            function.upper(), " was made from the histogram"));
     }
     return opened;
+}
+
+}  // namespace
+
+OpenedSession open_session(const fs::path& path, const std::vector<std::string>& settings,
+                           const OpeningOptions& options)
+{
+    return open_measured(path, settings, options, measure);
+}
+
+OpenedSession open_session_for_first_look(const fs::path& path, const std::vector<std::string>& settings,
+                                          const OpeningOptions& options)
+{
+    return open_measured(path, settings, options, measure_at_first_look);
 }
 
 fs::path journal_beside(const fs::path& session_file)

@@ -15,7 +15,7 @@ using OrderedJson = nlohmann::ordered_json;
 
 std::string path_text(const std::filesystem::path& path, const std::filesystem::path& folder)
 {
-    if (leads_to_network(path)) return path.string();
+    if (leads_to_network(path)) return url_without_query(path.string());  // a query is a credential
     const std::filesystem::path whole = std::filesystem::absolute(folder / ".").lexically_normal();
     const std::filesystem::path relative = path.lexically_relative(whole);
     // The files of a project move together: they are in its folder shvr, or in the folder that contains shvr.
