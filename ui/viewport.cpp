@@ -8,6 +8,7 @@
 #include "engine/workbench/edits/edit.h"
 #include "engine/workbench/sight/gestures.h"
 #include "engine/workbench/sight/hits.h"
+#include "ui/files/file_list.h"
 #include "ui/mouse_feed.h"
 
 namespace shvr::ui {
@@ -280,11 +281,13 @@ void Viewport::handle(const InputEvent& event, const Model& model, bool ui_has_m
         if (!ui_has_mouse && contains(scroll->at)) this->scroll(*scroll, model, actions);
     } else if (const auto* drop = std::get_if<DropEvent>(&event.what)) {
         TakeFile taken{.previews = true};
-        for (const std::string& path : drop->paths)
+        for (const std::string& dropped : drop->paths) {
+            const std::string path = without_query(dropped);  // a link, as from a browser
             if (taken.path.empty())
                 taken.path = path;
             else
                 taken.beside += path + '\n';
+        }
         if (!taken.path.empty()) actions.emplace_back(std::move(taken));
     }
 }

@@ -116,7 +116,9 @@ void add_view(CLI::App& program)
 {
     auto options = std::make_shared<ViewCommandOptions>();
     CLI::App* command = program.add_subcommand("view", "Opens the window; so does shvr alone");
-    command->add_option("INPUT", options->input, "Session (.json), project folder or volume; none: drop one onto it");
+    command->add_option(
+        "INPUT", options->input,
+        "Session (.json), project folder, volume or the address of an OME-Zarr; none: drop one onto it");
     command->add_option("--size", options->size, "Size of the window, as in 1280x800");
     command->add_flag("--allow-force", options->allow_force,
                       "Let a haptic device put force on the hand; one on HID only with a verified profile");
@@ -126,7 +128,7 @@ void add_view(CLI::App& program)
     add_output_options(*command, options->common);
     command->footer(
         "With --json the run's timings and counts are printed when the window closes.\n"
-        "Example:\n  shvr view project/");
+        "Example:\n  shvr view project/\n  shvr view https://host/scan.zarr");
     command->callback([options] { run_view(*options); });
 }
 

@@ -10,6 +10,7 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/formats/open_volume.h"
+#include "engine/remote/address.h"
 #include "ui/files/asked.h"
 
 namespace shvr::ui {
@@ -186,6 +187,27 @@ fs::path typed_path(std::string_view typed, const fs::path& folder)
     return path.has_filename() || path == path.root_path() ? path : path.parent_path();
 }
 
+bool is_typed_address(std::string_view typed)
+{
+    return is_address(trimmed(typed));
+}
+
+std::string without_query(const std::string& typed)
+{
+    try {
+        return take_query(typed);
+    } catch (const Error&) {
+        return url_without_query(typed);
+    }
+}
+
+std::string typed_address(std::string_view typed)
+{
+    std::string address = take_query(std::string(trimmed(typed)));
+    static_cast<void>(parse_address(address));
+    return address;
+}
+
 std::string completed(const std::string& typed, const fs::path& folder)
 {
     const size_t slash = typed.rfind('/');
@@ -256,12 +278,14 @@ std::vector<Place> places(const fs::path& open, const std::vector<fs::path>& rec
         found.push_back({name.empty() ? folder.string() : name, folder});
     };
     // A project's files lie in a subfolder: the project's folder, as the user knows it, is the parent.
-    const fs::path whole = open.empty() ? open : fs::absolute(open).lexically_normal();
+    const bool is_here = !open.empty() && !is_address(open.string());
+    const fs::path whole = is_here ? fs::absolute(open).lexically_normal() : fs::path();
     if (whole.parent_path().filename() == "shvr")
         add(whole.parent_path().parent_path().parent_path());
     else
         add(whole.parent_path());
-    for (const fs::path& path : recent) add(path.parent_path());
+    for (const fs::path& path : recent)
+        if (!is_address(path.string())) add(path.parent_path());
     return found;
 }
 

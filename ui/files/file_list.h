@@ -68,6 +68,13 @@ std::filesystem::path home_folder();
 /// Returns the path that a typed text means: "~" is home, surrounding quotes and spaces are dropped, and relative paths
 /// are relative to `folder`. The result has no "." or "..".
 std::filesystem::path typed_path(std::string_view typed, const std::filesystem::path& folder);
+/// Returns whether a typed text or a path is the address of a volume, https://... or s3://..., and not a path.
+bool is_typed_address(std::string_view typed);
+/// Returns a typed path or address without the address's query; the same for what is no address at all.
+std::string without_query(const std::string& typed);
+/// Returns the typed address without its query, which is a credential and is kept in memory. Fails if no volume can be
+/// read from there.
+std::string typed_address(std::string_view typed);
 /// Returns the typed text with the common beginning of all matching names; a single matching folder gets a slash.
 std::string completed(const std::string& typed, const std::filesystem::path& folder);
 

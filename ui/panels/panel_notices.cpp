@@ -7,6 +7,7 @@
 
 #include "ui/panels/panels.h"
 #include "ui/panels/style.h"
+#include "ui/panels/widgets.h"
 
 namespace shvr::ui {
 
@@ -64,6 +65,24 @@ float read_only_banner(const Model& model, const glm::vec2& begin, float width, 
     ImGui::Text("Read only: %s %.*s. Nothing that is changed here is saved.",
                 is_outside ? "this session writes files outside its folder:" : "open for writing in", int(why.size()),
                 why.data());
+    ImGui::PopTextWrapPos();
+    return end_banner();
+}
+
+/// Draws the banner over a volume at an address. Returns its height.
+float remote_banner(const Model& model, const glm::vec2& begin, float width, Actions& actions)
+{
+    begin_banner("On another machine", begin, width);
+    if (ImGui::Button("Import as project...")) ask_to_import(model.session.volume_path);
+    hint("copies the volume to this machine, and opens the copy");
+    ImGui::SameLine();
+    if (ImGui::Button("Annotate without a copy...")) ask_for_session_of_remote(model);
+    hint("makes a session on this machine that names the address and keeps the annotation");
+    ImGui::SameLine();
+    if (ImGui::Button("Try again")) actions.push_back(Open{.path = std::filesystem::path(model.remote)});
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::Text("Read only: %.*s lies on another machine. Nothing that is changed here is saved.",
+                int(model.remote.size()), model.remote.data());
     ImGui::PopTextWrapPos();
     return end_banner();
 }
@@ -138,7 +157,10 @@ void question_of_use(const Model& model, Actions& actions)
 float notices(const Model& model, const glm::vec2& begin, float width, Actions& actions)
 {
     float top = begin.y;
-    if (!model.holder.empty() || !model.outside.empty()) top += read_only_banner(model, begin, width, actions);
+    if (!model.remote.empty())
+        top += remote_banner(model, begin, width, actions);
+    else if (!model.holder.empty() || !model.outside.empty())
+        top += read_only_banner(model, begin, width, actions);
     if (!model.looks_like_labels.empty()) top += labels_banner(model, {begin.x, top}, width, actions);
     if (!model.recovered.empty()) top += recovered_banner(model, {begin.x, top}, width, actions);
     question_of_belief(model, actions);

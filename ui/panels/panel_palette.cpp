@@ -110,7 +110,8 @@ void palette_window(const Model& model, Actions& actions)
     ImGui::SetNextItemWidth(-1.0f);
     const std::string before = palette.text;
     const bool is_entered = ImGui::InputTextWithHint(
-        "##text", "words of anything: an action, a panel, a file, a group, or a setting and its value (ambient 0.4)",
+        "##text",
+        "words of anything: an action, a panel, a file, an address, a group, or a setting and its value (ambient 0.4)",
         &palette.text, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackAlways, put_cursor_behind);
     keys.after_field();
     const bool field_is_active = ImGui::IsItemActive();

@@ -95,6 +95,8 @@ bool choosers_are_busy();
 void ask_for_name(const Model& model);
 /// Asks for the scan to which the open label image belongs, opens that scan, and loads the label image into it.
 void ask_for_scan_of_labels(const Model& model);
+/// Asks for the session file on this machine that is to keep annotation of the open volume at an address.
+void ask_for_session_of_remote(const Model& model);
 /// States what loading a file would change, and asks whether to load it.
 void load_preview_dialog(const Model& model, Actions& actions);
 /// Shows the dialog that asks for a file with annotation or a transfer function, from the next frame on.

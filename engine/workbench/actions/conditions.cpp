@@ -10,6 +10,8 @@ std::string why_not_edited(const Model& model)
 {
     if (!model.holder.empty()) return sentence("the project is open for writing in ", model.holder);
     if (!model.outside.empty()) return sentence("its session writes outside its folder: ", model.outside);
+    if (!model.remote.empty())
+        return "the scan lies on another machine: import it as a project, or work on a copy of the session";
     if (!model.disputes.empty()) return "saved files were changed by another program: files or journal?";
     if (model.is_saving_as) return "the work is being saved under another name";
     return {};

@@ -2,6 +2,7 @@
 // Actions on the work: files, history and tasks (engine/tasks).
 
 #include "engine/annotation/script/script.h"
+#include "engine/remote/address.h"
 #include "engine/tasks/evaluate_task.h"
 #include "engine/tasks/export_task.h"
 #include "engine/tasks/import_task.h"
@@ -37,7 +38,7 @@ struct Screenshot {
     bool is_large = false;  ///< larger than the window, by the factor interaction.screenshot_scale of the session
 };
 
-/// Opens a file in the background; the open document stays until the new one is loaded.
+/// Opens a file, or a volume at an address, in the background; the open document stays until the new one is loaded.
 struct Open {
     std::filesystem::path path;
     std::string settings{};      ///< settings for this opening, one per line, as after --set: "volume.channel=red"
@@ -107,7 +108,9 @@ struct ChooseBelief {
 };
 
 /// Saves everything that is shown under new names, and opens this copy.
-struct WorkOnCopy {};
+struct WorkOnCopy {
+    std::filesystem::path path;  ///< session file of the copy; empty: an unused name next to the open session
+};
 
 /// Opens a copy, owned by the user, of the example that ships.
 struct OpenExample {};
@@ -177,16 +180,17 @@ inline constexpr auto WORK_ACTIONS = std::tuple{
         {"screenshot", "Screenshot", WORK_GROUP, "writes the picture as shown, or a larger one, next to the session"},
         [](auto& f, Screenshot& a) { f.flag("large", a.is_large, {}); }),
     row<Open, FileTaker>(
-        {"open", "Open", WORK_GROUP, "opens a volume, a session, a project folder or a picture", Needs::nothing},
+        {"open", "Open", WORK_GROUP,
+         "opens a volume, a session, a project folder, a picture or the address of an OME-Zarr", Needs::nothing},
         [](auto& f, Open& a) {
-            f.path("path", a.path, {.is_required = true});
+            f.path("path", a.path, {.allowed = PATH_OR_ADDRESS, .is_required = true});
             f.text("settings", a.settings, {"as --set takes them, one a line"});
             f.flag("saves_outside", a.saves_outside, {"the session may write files outside its folder"});
         }),
     row<LookAtFile, FileTaker>({"look_at_file", "Look at a file", WORK_GROUP,
                                 "reads a file's header, and estimates what loading it takes", Needs::nothing},
                                [](auto& f, LookAtFile& a) {
-                                   f.path("path", a.path, {});
+                                   f.path("path", a.path, {.allowed = PATH_OR_ADDRESS});
                                    f.text("settings", a.settings, {"as --set takes them, one a line"});
                                }),
     row<TakeFile, FileTaker>({"take_file", "Take a file", WORK_GROUP,
@@ -194,7 +198,7 @@ inline constexpr auto WORK_ACTIONS = std::tuple{
                               "are loaded into the scan among them",
                               Needs::nothing},
                              [](auto& f, TakeFile& a) {
-                                 f.path("path", a.path, {.is_required = true});
+                                 f.path("path", a.path, {.allowed = PATH_OR_ADDRESS, .is_required = true});
                                  f.text("beside", a.beside,
                                         {"paths of the other files in the same drop, one per line"});
                                  f.choice("use", a.use, {"what the file is, if its contents do not state it"});
@@ -260,7 +264,15 @@ inline constexpr auto WORK_ACTIONS = std::tuple{
             return model.disputes.empty() ? "no saved file was changed by another program" : "";
         }),
     row<WorkOnCopy, Saver>(
-        {"work_on_copy", "Work on a copy", WORK_GROUP, "saves everything shown under new names, and opens the copy"}),
+        {"work_on_copy", "Work on a copy", WORK_GROUP, "saves everything shown under new names, and opens the copy"},
+        [](auto& f, WorkOnCopy& a) {
+            f.path("path", a.path, {"session file of the copy; empty: an unused name next to the open session"});
+        },
+        [](const auto& model, const WorkOnCopy& action) -> std::string {
+            return action.path.empty() && !model.remote.empty()
+                       ? "the scan is on another machine; expected path, the session file to make on this one"
+                       : "";
+        }),
     row<OpenExample, FileTaker>({"open_example", "Open the example", WORK_GROUP,
                                  "opens the supplied example, in a copy of your own", Needs::nothing})};
 

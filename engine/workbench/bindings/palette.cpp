@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
+#include "engine/remote/address.h"
 #include "engine/session/session_keys.h"
 #include "engine/session/session_patch.h"
 #include "engine/workbench/actions/action_rows.h"
@@ -68,8 +69,26 @@ PaletteEntry typed(const Model& model, std::string_view text, const char* group,
     return entry;
 }
 
+/// Adds the opening of a typed address. The entry's name lacks the address's query, which is a credential.
+void add_address(std::vector<PaletteEntry>& entries, const Model& model, std::string_view text)
+{
+    PaletteEntry entry{.group = "Volume at an address"};
+    try {
+        const std::string address = take_query(std::string(text));
+        entry.name = "Open " + address;
+        static_cast<void>(parse_address(address));
+        entry.action = Open{address};
+        entry.why_not = why_not(model, *entry.action);
+    } catch (const Error& error) {
+        entry.name = "Open an address";
+        entry.why_not = error.what();
+    }
+    entries.push_back(std::move(entry));
+}
+
 void add_typed(std::vector<PaletteEntry>& entries, const Model& model, std::string_view text)
 {
+    if (is_address(text)) return add_address(entries, model, text);
     const std::string_view first = text.substr(0, text.find(' '));
     const size_t equals = text.find('=');
     if (is_action_id(first)) {

@@ -7,6 +7,7 @@
 #include "engine/base/file.h"
 #include "engine/base/json.h"
 #include "engine/base/text.h"
+#include "engine/remote/address.h"
 #include "engine/session/fields.h"
 #include "engine/session/session_patch.h"
 #include "engine/workbench/bindings/keymap.h"
@@ -53,7 +54,7 @@ struct RecentFile {
 };
 void fields(Fields& f, RecentFile& recent)
 {
-    f.path("path", recent.path, {.is_required = true});
+    f.path("path", recent.path, {.allowed = PATH_OR_ADDRESS, .is_required = true});
 }
 
 void fields(Fields& f, PanelLayout& panel)

@@ -50,6 +50,7 @@ DocumentModel Desk::document_model() const
             .has_session_file = document->has_session_file(),
             .holder = document->holder,
             .outside = document->outside,
+            .remote = document->remote,
             .messages = messages};
 }
 

@@ -38,13 +38,31 @@ std::optional<std::string> text_of_session(const std::filesystem::path& path)
     return read_text(path, MAX_SESSION_BYTES);
 }
 
+/// A volume at an address has no work, and nothing is kept of it: neither a session nor a journal. Screenshots are
+/// written into the current folder.
+Document::Read Document::read_remote(OpenedSession opened, const std::filesystem::path& address,
+                                     const std::vector<std::string>& overridden)
+{
+    Session& session = opened.session;
+    const VolumeInfo& volume = opened.source->info();
+    std::error_code ignored;
+    const std::filesystem::path folder = std::filesystem::current_path(ignored);
+    const std::filesystem::path named = address.has_filename() ? address : address.parent_path();
+    shvr::choose_thresholds(session, volume, opened.statistics);
+    Read read{.opened = {},
+              .session_path = (folder / named.filename()).replace_extension(".session.json"),
+              .overridden = overridden,
+              .work = std::make_unique<Work>(volume.size, volume.type),
+              .remote = address.string()};
+    read.notices = read.work->open(work_files(session, volume, overridden), {.only_look = true, .program = {}});
+    read.opened = std::move(opened);
+    return read;
+}
+
 Document::Read Document::read(OpenedSession opened, const std::filesystem::path& input,
                               const std::vector<std::string>& overridden, Work::Opening opening, bool may_write_outside)
 {
-    if (leads_to_network(input))
-        fail(input.string(),
-             ": is a volume on another machine; expected a session file on this one that names it as its volume.path, "
-             "where annotation can be kept");
+    if (leads_to_network(input)) return read_remote(std::move(opened), input, overridden);
     Session& session = opened.session;
     const VolumeInfo& volume = opened.source->info();
     const std::filesystem::path path = session_path_of(input);
@@ -88,6 +106,7 @@ Document::Document(Renderer& renderer, Read read, const View::Options& view_opti
       messages(std::move(read.notices)),
       holder(std::move(read.holder)),
       outside(std::move(read.outside)),
+      remote(std::move(read.remote)),
       is_script_(read.is_script),
       overridden_(std::move(read.overridden)),
       session_text_(std::move(read.session_text))
@@ -317,7 +336,20 @@ bool Document::is_cut() const
            !trace.internode_between(cut_ends->first, cut_ends->second);
 }
 
-std::optional<LocalBall> Document::ball_at(const glm::dvec3& voxel, const std::optional<glm::dvec3>& way) const
+/// Returns intensities with density offsets. From another machine: only what was read; otherwise starts to read it.
+DensityBox Document::densities_at_once(const VoxelBox& box)
+{
+    const DensityField& offsets = annotator.document().density;
+    if (!is_address(session.volume_path.string())) return densities_in(*source, offsets, box);
+    std::optional<DensityBox> read = far_.find(source, box);
+    if (!read && far_.is_reading())
+        fail("the voxels there are still being read from another machine; expected them in a moment: try again then");
+    if (!read) fail("the voxels there cannot be read from ", session.volume_path.string());
+    add_offsets(offsets, box, *read);
+    return *std::move(read);
+}
+
+std::optional<LocalBall> Document::ball_at(const glm::dvec3& voxel, const std::optional<glm::dvec3>& way)
 {
     const VolumeInfo& info = volume();
     const double finest = std::min({info.spacing.x, info.spacing.y, info.spacing.z});
@@ -331,7 +363,7 @@ std::optional<LocalBall> Document::ball_at(const glm::dvec3& voxel, const std::o
         const glm::dvec3 reach = (way ? 2.5 : 2.0) * most / info.spacing + 2.0;
         const VoxelBox box{Size3(glm::clamp(glm::floor(about - reach), glm::dvec3(0.0), size - 1.0)),
                            Size3(glm::clamp(glm::ceil(about + reach), glm::dvec3(1.0), size))};
-        const DensityBox densities = densities_in(*source, annotator.document().density, box);
+        const DensityBox densities = densities_at_once(box);
         const auto density_at = [&](const glm::dvec3& at) { return densities.at(at); };
         const auto found =
             way ? ball_behind(density_at, *brush().threshold, voxel, *way, info.spacing, most, probe_radius())

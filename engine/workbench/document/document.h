@@ -13,6 +13,7 @@
 #include "engine/annotation/trace/local_radius.h"
 #include "engine/annotation/trace/trace_command.h"
 #include "engine/jobs/progress_reporter.h"
+#include "engine/live/far_voxels.h"
 #include "engine/live/previewer.h"
 #include "engine/live/probe_meter.h"
 #include "engine/live/screen.h"
@@ -35,13 +36,14 @@ struct Document {
         std::vector<Notice> notices{};
         std::string holder{};
         std::string outside{};
+        std::string remote{};
         std::optional<std::string> session_text{};
         bool is_script = false;  ///< as WorkbenchOptions::is_script
     };
     /// Reads the saved work of a session. `overridden`: settings, as "key=value", in which the session differs from
-    /// its file. If another process writes the work, or if the session would write outside its folder and
-    /// `may_write_outside` is not set, the document is opened read-only. Fails if the work cannot be read. Any
-    /// thread.
+    /// its file. If another process writes the work, if the session would write outside its folder and
+    /// `may_write_outside` is not set, or if `input` is the address of a volume, the document is opened read-only.
+    /// Fails if the work cannot be read. Any thread.
     static Read read(OpenedSession opened, const std::filesystem::path& input,
                      const std::vector<std::string>& overridden, Work::Opening opening, bool may_write_outside);
     /// Shows the document in the scene of its volume; fails like Scene::show. At first, the mouse moves the probe.
@@ -63,6 +65,7 @@ struct Document {
     std::string holder;                 ///< description of another process that writes the work; empty: none
     std::string outside;                ///< files that the session may not write, since they are outside its folder;
                                         ///< empty: none, or the user has agreed (annotation_files.h)
+    std::string remote;                 ///< address of the volume if that was opened, not a session that names it
     bool drags_node = false;            ///< the selection follows the probe
     glm::dvec3 drag_from{0.0};          ///< where the tools were when the drag began, in voxels: one selected node
                                         ///< moves to the probe, several parts move along
@@ -109,8 +112,9 @@ struct Document {
     bool is_cut() const;
     /// Returns the largest ball around a point that fits into the structure above the paint threshold. `way`: direction
     /// of a line of sight; if given, the structure is the one that this line enters, at most the probe's radius away
-    /// from it (local_radius.h). Null if unknown. Reads 30^3 voxels, up to 124^3 in wide structures.
-    std::optional<LocalBall> ball_at(const glm::dvec3& voxel, const std::optional<glm::dvec3>& way = {}) const;
+    /// from it (local_radius.h). Null if unknown. Reads 30^3 voxels, up to 124^3 in wide structures. Fails if they are
+    /// still being read from another machine.
+    std::optional<LocalBall> ball_at(const glm::dvec3& voxel, const std::optional<glm::dvec3>& way = {});
     /// Returns the bounding box of the probe's ball; it contains at least one voxel of the volume.
     VoxelBox voxels_around_probe() const;
     /// The view and the probe, which are saved without a message, and whose changes do not count as unsaved work.
@@ -132,9 +136,12 @@ struct Document {
     bool only_looks() const { return annotator.work().only_looks(); }
     std::string why_only_looks() const
     {
-        return outside.empty() ? "it is open for writing in " + holder
-                               : "its session writes outside its folder: " + outside;
+        return !remote.empty()   ? std::string("it lies on another machine")
+               : outside.empty() ? "it is open for writing in " + holder
+                                 : "its session writes outside its folder: " + outside;
     }
+    /// Returns what messages call the document: the path of its session or, if there is none, its address.
+    std::string shown_name() const { return remote.empty() ? session_path.string() : remote; }
     bool is_script() const { return is_script_; }
     /// Call this after changes of the session other than view and probe: clears the cached result of is_saved().
     void note_edit() { edits_are_saved_.reset(); }
@@ -166,6 +173,9 @@ struct Document {
     std::function<std::filesystem::path()> copier(const std::filesystem::path& path = {}) const;
 
 private:
+    static Read read_remote(OpenedSession opened, const std::filesystem::path& address,
+                            const std::vector<std::string>& overridden);
+    DensityBox densities_at_once(const VoxelBox& box);
     void take_kept_settings();
     void begin_with_turning();
     void name_trace();
@@ -174,6 +184,7 @@ private:
     Session edits() const;
     void note_saved();
 
+    FarVoxels far_;  ///< for ball_at, if the volume is on another machine
     bool is_script_ = false;
     std::vector<std::string> overridden_;      ///< settings that differ from the file
     std::optional<std::string> session_text_;  ///< contents of the session file when this process last read or wrote it

@@ -54,9 +54,10 @@ std::filesystem::path free_copy_path(const std::filesystem::path& session_file)
 std::shared_ptr<Document::Saving> Document::begin_save(Parts parts)
 {
     if (only_looks())
-        throw JournalTaken(sentence(session_path.string(), ": is not saved, since ", why_only_looks(),
-                                    outside.empty() ? "; expected it to be closed there, or a copy to work on"
-                                                    : "; expected a choice: there, or a copy to work on"));
+        throw JournalTaken(sentence(shown_name(), ": is not saved, since ", why_only_looks(),
+                                    !remote.empty()   ? "; expected an import, or a copy of the session to work on"
+                                    : outside.empty() ? "; expected it to be closed there, or a copy to work on"
+                                                      : "; expected a choice: there, or a copy to work on"));
     std::shared_ptr<Saving> saving(new Saving);
     if (parts != Parts::session) name_sparse_files(parts, *saving);
     if (parts == Parts::work) {

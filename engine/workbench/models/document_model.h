@@ -23,6 +23,8 @@ struct DocumentModel {
     std::string_view holder{};      ///< another process that writes the project, so that this window is read-only
     std::string_view outside{};     ///< files that the session may not write, since they are outside its folder; if
                                     ///< there are any, the window is read-only
+    std::string_view remote{};      ///< address of the volume if that was opened, not a session that names it; unless
+                                    ///< it is empty, the window is read-only
     const MessageLog& messages;
 };
 

@@ -8,6 +8,7 @@
 #include "engine/base/atomic_file.h"
 #include "engine/base/file.h"
 #include "engine/base/json.h"
+#include "engine/remote/address.h"
 #include "engine/session/label_looks.h"
 #include "engine/session/lasting_settings.h"
 #include "engine/session/session_patch.h"
@@ -133,6 +134,7 @@ void FileTaker::act(const TakeFile& action)
     std::vector<std::filesystem::path> others;
     for (const std::string& line : lines_of(action.beside)) others.emplace_back(line);
     if (action.use == FileUse::scan) return others_.begin_open(action.path, {}, others, false);
+    if (is_address(action.path.string()) && others.empty()) return others_.begin_open(action.path, {}, {}, true);
     if (action.use != FileUse::by_contents) {
         take_as(action.use, action.path, step);
         for (const std::filesystem::path& path : others) act(TakeFile{.path = path, .previews = action.previews});

@@ -5,6 +5,7 @@
 
 #include "engine/base/text.h"
 #include "engine/remote/address.h"
+#include "engine/session/first_look.h"
 #include "engine/session/picture_session.h"
 #include "engine/session/session_keys.h"
 #include "engine/session/session_patch.h"
@@ -77,6 +78,7 @@ void Opener::start(Opening next)
     others_.cancel_reload();
     open_failure_.clear();
     failed_path_.clear();
+    next.path = take_query(next.path.string());
     next.name = short_name(next.path);
     next.begun_s = options_.now_s();
     if (next.how.program.empty()) next.how.program = "shvr view";
@@ -129,13 +131,14 @@ void Opener::read_next()
             goes_on && settings.empty() ? session_saved_for(path) : std::filesystem::path();
         std::filesystem::path input = saved.empty() ? path : saved;
         std::optional<Session> pictured{};
-        OpenedSession opened = open_session(input, settings, options);
+        OpenedSession opened = open_session_for_first_look(input, settings, options);
         if (const std::filesystem::path of = opened_for_picture(input, opened); !of.empty()) {
             pictured = std::move(opened.session);
             input = of;
-            opened = open_session(input, settings, options);
+            opened = open_session_for_first_look(input, settings, options);
         }
-        std::string labels = goes_on ? why_labels(input, *opened.source, opened.statistics) : std::string();
+        const bool is_far = leads_to_network(opened.session.volume_path);  // label images there are asked for no voxels
+        std::string labels = goes_on && !is_far ? why_labels(input, *opened.source, opened.statistics) : std::string();
         const Session& session = opened.session;
         opened.source = renderer.with_levels(std::move(opened.source), session.render, shows_occlusion(session.light),
                                              reporter.begin("making coarser levels of " + name));
@@ -205,6 +208,7 @@ bool Opener::is_ready_to_load()
         if (leave_now == Leave::refused) fail("the open work cannot be saved: ", why);
     }
     Work& work = document_->annotator.work();
+    if (!document_->remote.empty() || !opening_->read->remote.empty()) return true;  // one of them has no journal
     if (!is_one_journal(document_->session.journal_path, opening_->read->opened.session.journal_path)) return true;
     if (others_.is_saving()) return false;
     work.settle();  // it was flushed a moment ago
@@ -263,13 +267,13 @@ void Opener::show_again()
     try {
         away_->show_again(renderer_);
     } catch (const Error& error) {
-        const std::string path = away_->session_path.string();
+        const std::string path = away_->shown_name();
         away_.reset();
         renderer_.take_scene();
         return say(sentence(path, " cannot be shown again: ", error.what(), "; it is saved"), Weight::error);
     }
     document_ = std::move(away_);
-    say(document_->session_path.string() + " is open again");
+    say(document_->shown_name() + " is open again");
 }
 
 /// Resets all state of services that belongs to the previous document.

@@ -91,12 +91,12 @@ void Opener::end(std::exception_ptr failure)
     } catch (...) {
     }
     if (ended->comes_back) {
-        const std::string path = away_ ? away_->session_path.string() : std::string();
+        const std::string path = away_ ? away_->shown_name() : std::string();
         away_.reset();
         return say(sentence(why, "; ", path, " cannot be shown again either; it is saved"), Weight::error);
     }
     if (!ended->taken_into_it.empty()) why += "; what was dropped with it is not taken either";
-    if (document_) why += "; " + document_->session_path.string() + " stays open";
+    if (document_) why += "; " + document_->shown_name() + " stays open";
     open_failure_ = why;
     failed_path_ = ended->path;
     if (awaited_failure_)
@@ -165,7 +165,7 @@ void Opener::load_again()
     } catch (const DeviceLost&) {
         throw;
     } catch (const Error& error) {
-        say(sentence("The graphics device was restarted, but ", document_->session_path.string(),
+        say(sentence("The graphics device was restarted, but ", document_->shown_name(),
                      " cannot be shown on it: ", error.what()),
             Weight::error);
         document_->annotator.drop_strokes();

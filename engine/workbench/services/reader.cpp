@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine/live/densities.h"
+#include "engine/remote/address.h"
 #include "engine/workbench/sight/words.h"
 
 namespace shvr::ui {
@@ -44,8 +45,7 @@ void Reader::follow_reading()
     const uint64_t revision = document.annotator.revision();
     const double now = options_.now_s();
     if ((voxel != read_voxel_ || revision != read_revision_) && now >= read_again_s_) {
-        read_at(voxel);
-        read_voxel_ = voxel;
+        read_voxel_ = read_at(voxel) ? std::optional(voxel) : std::nullopt;
         read_revision_ = revision;
         const double end = options_.now_s();
         read_again_s_ = end + 9.0 * (end - now);
@@ -73,7 +73,8 @@ bool Reader::probe_is_measured() const
     }
 }
 
-void Reader::read_at(const glm::dvec3& voxel)
+/// Returns whether all was read. Only voxels of a volume on another machine may still be on their way.
+bool Reader::read_at(const glm::dvec3& voxel)
 {
     const Document& document = *document_;
     const glm::dvec3 size(document.volume().size);
@@ -82,17 +83,23 @@ void Reader::read_at(const glm::dvec3& voxel)
     reading_.group = 0;
     reading_.is_inside =
         glm::all(glm::greaterThanEqual(voxel, glm::dvec3(0.0))) && glm::all(glm::lessThan(voxel, size));
-    if (!reading_.is_inside) return;
+    if (!reading_.is_inside) return true;
     const Size3 at(voxel);
     const auto& work = document.annotator.document();
     reading_.group = work.mask.at(at);
     if (work.density.voxels() > 0) reading_.offset = work.density.at(at);
+    if (is_address(document.session.volume_path.string())) {
+        const std::optional<DensityBox> read = far_.find(document.source, {at, at + int64_t{1}});
+        if (read) reading_.intensity = read->values[0];
+        return !far_.is_reading();
+    }
     try {
         reading_.intensity =
             densities_in(*document.source, work.density, {at, at + int64_t{1}}).values[0] - reading_.offset;
     } catch (const Error&) {
         // Without a value, the reading is empty. The renderer reports the error when it draws the voxel.
     }
+    return true;
 }
 
 // ---- Measuring ------------------------------------------------------------------------------------------------------

@@ -1,6 +1,7 @@
 #pragma once
 // Reads the values under the probe and the pointer, keeps measurements, and reports the scene's messages.
 
+#include "engine/live/far_voxels.h"
 #include "engine/workbench/desk/preference_keeper.h"
 #include "engine/workbench/desk/service.h"
 
@@ -29,7 +30,7 @@ public:
 
 private:
     void follow_reading();
-    void read_at(const glm::dvec3& voxel);
+    bool read_at(const glm::dvec3& voxel);
     bool probe_is_measured() const;
     glm::dvec3 voxel_to_read() const;
 
@@ -38,6 +39,7 @@ private:
     Reading reading_;
     std::optional<glm::dvec3> read_voxel_;  ///< voxel, in whole coordinates, that has the intensity in `reading_`
     uint64_t read_revision_ = 0;            ///< revision of the paint
+    FarVoxels far_;                         ///< the voxel, if the volume is on another machine
     double read_again_s_ = 0.0;             ///< earliest time of the next read, which limits the time spent reading
     std::string clipboard_;
     Attempt reading_turn_;

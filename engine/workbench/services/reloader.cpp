@@ -57,7 +57,7 @@ void Reloader::advance()
         document_->screen.clear();
         const std::unique_ptr<Scene> before = renderer_.show(std::move(reload_->scene));
         document_->show_again(renderer_);
-        say("Reloaded: " + document_->session_path.string());
+        say("Reloaded: " + document_->shown_name());
     } catch (const DeviceLost&) {
         throw;
     } catch (const Error& error) {

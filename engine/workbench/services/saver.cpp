@@ -97,9 +97,9 @@ void Saver::act(const CopySession& action)
     start_copy(action.path, false);
 }
 
-void Saver::act(const WorkOnCopy&)
+void Saver::act(const WorkOnCopy& action)
 {
-    start_copy({}, true);
+    start_copy(action.path, true);
 }
 
 /// Starts writing a copy of the current state. Later changes are not in the copy.
@@ -114,7 +114,7 @@ void Saver::start_copy(const std::filesystem::path& path, bool opens_it)
             const std::filesystem::path copied = copy();
             return [this, copied, opens_it] {
                 if (opens_it) return others_.begin_open(copied);
-                say("Copied to " + copied.string() + "; this window goes on with " + document_->session_path.string());
+                say("Copied to " + copied.string() + "; this window goes on with " + document_->shown_name());
             };
         }));
 }

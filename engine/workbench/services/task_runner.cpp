@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/remote/address.h"
+
 namespace shvr::ui {
 
 namespace {
@@ -121,6 +123,7 @@ void TaskRunner::act(const ExportTask& task)
 void TaskRunner::act(const ImportTask& task)
 {
     ImportTask wanted = task;
+    wanted.volume = take_query(task.volume.string());
     wanted.program = "shvr view";
     if (wanted.budget_host_mib == 0)
         wanted.budget_host_mib = int64_t(keeper_.preferences().budget_host_mib.value_or(0.0));
@@ -131,7 +134,7 @@ void TaskRunner::act(const ImportTask& task)
             others_.open(project);
         };
     };
-    start_writing("importing " + short_name(task.volume), import);
+    start_writing("importing " + short_name(wanted.volume), import);
 }
 
 void TaskRunner::act(const LabelTask& task)
@@ -153,8 +156,11 @@ void TaskRunner::act(const LabelTask& task)
     start_writing("labelling " + name, label);
 }
 
-void TaskRunner::act(const EvaluateTask& task)
+void TaskRunner::act(const EvaluateTask& asked)
 {
+    EvaluateTask task = asked;
+    for (std::filesystem::path* const path : {&task.truth_mask, &task.mask, &task.volume})
+        *path = take_query(path->string());
     jobs_.start("comparing with the reference", [this, task](ProgressReporter& reporter) -> Jobs::Completion {
         const EvaluateResult result = run(task, reporter);
         return [this, result] {

@@ -27,7 +27,7 @@ public:
     void act(const ExportTask& task);
     void act(const ImportTask& task);
     void act(const LabelTask& task);
-    void act(const EvaluateTask& task);
+    void act(const EvaluateTask& asked);
     void act(const CancelJob& action);
 
     /// Cancels all jobs, except saves and copies of the work.

@@ -6,6 +6,7 @@
 #include <imgui/imgui.h>
 #include <imgui/imgui_stdlib.h>
 
+#include "ui/files/file_list.h"
 #include "ui/panels/dialogs/file_chooser.h"
 #include "ui/panels/field_keys.h"
 #include "ui/panels/imgui_keys.h"
@@ -115,6 +116,7 @@ public:
         const bool is_first = std::exchange(is_before_paths_, false);
         if (is_first) first_keys.before_field(begins_);
         if (ImGui::InputTextWithHint("##path", words_for(about, width).c_str(), &shown)) value = shown;
+        if (!ImGui::IsItemActive() && is_typed_address(shown)) value = without_query(shown);
         if (is_first) first_keys.after_field();
         tell(about);
         ImGui::SameLine(0.0f, ImGui::GetStyle().ItemInnerSpacing.x);

@@ -97,9 +97,11 @@ void FileChooser::ask(const fs::path& begin, std::vector<Place> places)
 void FileChooser::ask_again(const fs::path& path, std::vector<Place> places, std::string failure)
 {
     ask({}, std::move(places));
-    enter(path.parent_path());
+    if (!is_typed_address(path.string())) {
+        enter(path.parent_path());
+        wanted_name_ = path.filename().string();
+    }
     text_ = path.string();
-    wanted_name_ = path.filename().string();
     failure_ = std::move(failure);
 }
 
@@ -147,11 +149,26 @@ void FileChooser::accept(const std::string& typed, bool enters_folders)
 {
     forget_questions();
     failure_.clear();
+    if (is_typed_address(typed)) return accept_address(typed);
     judged_ = typed_path(typed, list_.folder());
     verdict_ = Asked<Verdict>([path = judged_, wanted = question_.wanted, enters_folders] {
         return verdict_on(path, wanted, enters_folders);
     });
     settle(AT_ONCE);
+}
+
+/// Accepts a typed address, without its query, or states why it is refused. Its server is asked when it is opened.
+void FileChooser::accept_address(const std::string& typed)
+{
+    try {
+        text_ = typed_address(typed);
+        if (question_.wanted != Wanted::scan)
+            fail(text_, ": is an address; expected a file or a folder on this machine");
+        accepted_ = text_;
+    } catch (const Error& error) {
+        failure_ = error.what();
+        field_wants_keys_ = true;
+    }
 }
 
 /// Does what waited for an answer.

@@ -1,8 +1,8 @@
 #pragma once
-// A dialog that asks for a file or a folder of this machine: places, a list, and a field for a typed path. A refused
-// path stays in the field, with the reason below. The file system is asked in the background (asked.h): fast answers
-// appear at once, and during slow answers the dialog states that it is waiting. Between Window::begin_ui and
-// Window::present, main thread.
+// A dialog that asks for a file or a folder of this machine: places, a list, and a field for a typed path. If a scan is
+// asked for, the field also takes the address of a volume. A refused path stays in the field, with the reason below.
+// The file system is asked in the background (asked.h): fast answers appear at once, and during slow answers the dialog
+// states that it is waiting. Between Window::begin_ui and Window::present, main thread.
 
 #include <optional>
 #include <string>
@@ -54,6 +54,7 @@ private:
     void file_table(float height);
     void keys();
     void accept(const std::string& typed, bool enters_folders);
+    void accept_address(const std::string& typed);
 
     Question question_;
     FileList list_;

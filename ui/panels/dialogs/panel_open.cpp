@@ -22,7 +22,7 @@ namespace {
 FileChooser opening({.title = "Open a volume, a session or a project",
                      .verb = "Open",
                      .note = names_of_formats("and") +
-                             "; voxels without a header: Open with options. Tab completes a path."});
+                             "; https:// and s3:// addresses of OME-Zarr. Without a header: Open with options."});
 FileChooser saving({.title = "Continue under another name",
                     .verb = "Save",
                     .note = "Session (.json); mask, trace and history are written next to it. Existing files stay.",
@@ -36,6 +36,11 @@ FileChooser taking({.title = "Load annotation or a curve",
 FileChooser labelled({.title = "Open the scan of a label image",
                       .verb = "Open",
                       .note = "The label image is loaded into it as its mask; undo takes that back."});
+FileChooser annotating(
+    {.title = "Annotate a volume on another machine",
+     .verb = "Annotate",
+     .note = "Session (.json) that names the address; mask, trace and history are written next to it.",
+     .wanted = FileChooser::Wanted::new_file});
 std::filesystem::path labels_of_scan;  ///< the label image whose scan the `labelled` dialog asks for
 
 std::vector<Place> places_of(const Model& model)
@@ -59,7 +64,9 @@ bool is_gone(const std::filesystem::path& path, const std::vector<std::filesyste
         std::thread([search = search, recent] {
             for (const std::filesystem::path& each : recent) {
                 std::error_code ignored;
-                if (std::filesystem::exists(each, ignored) || is_within_archive(each)) continue;
+                if (is_typed_address(each.string()) || std::filesystem::exists(each, ignored) ||
+                    is_within_archive(each))
+                    continue;
                 const std::scoped_lock lock(search->mutex);
                 search->gone.push_back(each);
             }
@@ -122,8 +129,10 @@ void open_dialog(const Model& model, Actions& actions)
         // At first, the dialog starts in the folder of the last opened file; later, in the folder where it was left.
         static bool was_shown = false;
         const auto& recent = model.preferences.recent;
+        const auto is_here = [](const std::filesystem::path& path) { return !is_typed_address(path.string()); };
+        const auto last = std::ranges::find_if(recent, is_here);
         const std::filesystem::path begin =
-            std::exchange(was_shown, true) || recent.empty() ? std::filesystem::path() : recent.front().parent_path();
+            std::exchange(was_shown, true) || last == recent.end() ? std::filesystem::path() : last->parent_path();
         opening.ask(begin, places_of(model));
     }
     if (!model.asks_what_to_open && std::exchange(was_asked, false) && opening.is_open()) opening.close();
@@ -162,9 +171,15 @@ void name_and_take_dialogs(const Model& model, Actions& actions)
 {
     if (const auto path = saving.draw()) actions.push_back(SaveAs{*path});
     if (const auto path = taking.draw(); path && model.is_open) actions.push_back(PreviewLoad{.path = *path});
+    if (const auto path = annotating.draw()) actions.push_back(WorkOnCopy{*path});
     if (const auto path = labelled.draw())
         actions.push_back(TakeFile{*path, labels_of_scan.string() + "\n", FileUse::scan});
     load_preview_dialog(model, actions);
+}
+
+void ask_for_session_of_remote(const Model& model)
+{
+    annotating.ask(model.session_path, places_of(model));
 }
 
 void ask_for_scan_of_labels(const Model& model)
@@ -191,7 +206,8 @@ void start_page(const Model& model, Actions& actions)
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("a scan of your own, or drop it here");
     hint((names_of_formats("or") +
-          "; a folder of slices, a session or a project. Voxels without a header: File, Open with options.")
+          "; a folder of slices, a session, a project or the address of an OME-Zarr. Voxels without a header: File, "
+          "Open with options.")
              .c_str());
     if (ImGui::Button("Open the example", {12.0f * font, 0.0f})) actions.push_back(OpenExample{});
     ImGui::SameLine();
