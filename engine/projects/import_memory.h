@@ -23,7 +23,7 @@ double sparse_import_bytes(const VolumeSource& source, const VolumeInfo& info, c
 /// Memory of the program and its libraries, and of heap fragmentation by freed blocks.
 inline constexpr double IMPORT_PROGRAM_BYTES = double(48 << 20);
 
-/// Returns `wanted`, or three quarters of the machine's memory if `wanted` is 0.
+/// Returns `wanted`, or three quarters of the memory that the process was given if `wanted` is 0.
 double import_budget(int64_t wanted);
 
 /// Fails if `bytes` exceed the budget. The message states the size, the estimate, the budget and the options that help.

@@ -150,7 +150,7 @@ void fields(Fields& f, ImportTask& task)
                      "voxels that cannot be read are as low as their type allows, and the project states how many");
     threads_field(f, task.threads);
     f.whole("budget_host_mib", task.budget_host_mib, 0, MAX_BUDGET_MIB,
-            {"memory that it may take, in MiB; 0: three quarters of the machine's"});
+            {"memory that it may take, in MiB; 0: three quarters of what the process was given"});
 }
 
 void check(const ImportTask& task)

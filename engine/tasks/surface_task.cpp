@@ -129,7 +129,7 @@ void fields(Fields& f, SurfaceTask& task)
             {"steps that smooth surfaces, within half a voxel, with the volumes of groups kept; 0: faces of voxels"});
     f.choice("space", task.space, {"where other programs show the volume, or voxel * spacing"});
     f.whole("budget_host_mib", task.budget_host_mib, 0, MAX_SURFACE_MIB,
-            {"memory that it may take, in MiB; 0: three quarters of the machine's"});
+            {"memory that it may take, in MiB; 0: three quarters of what the process was given"});
 }
 
 void check(const SurfaceTask& task)

@@ -251,8 +251,9 @@ void add_export(CLI::App& program)
         ->capture_default_str()
         ->check(CLI::Range(0, MAX_SURFACE_STEPS))
         ->needs(surface);
-    add_host_budget_option(*command, options->common,
-                           "Host memory that surfaces may take; unless given, three quarters of the machine's");
+    add_host_budget_option(
+        *command, options->common,
+        "Host memory that surfaces may take; unless stated, three quarters of what the process was given");
     command
         ->add_option("--space", options->space,
                      "Of trace, mesh and surfaces: physical, where other programs show the volume, with the origin at "

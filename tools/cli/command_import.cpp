@@ -179,7 +179,7 @@ void add_import(CLI::App& program)
         ->check(CLI::Range(0, 1024));
     add_host_budget_option(*command, options->common,
                            "Host memory that the import may take; one that would take more is refused before it "
-                           "begins. Three quarters of the machine's unless given");
+                           "begins. Three quarters of what the process was given unless stated");
     add_output_options(*command, options->common);
     command->footer(
         "The order is: crop, reverse, blur, downscale. An interrupted import continues when it is run again.\n"
