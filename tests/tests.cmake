@@ -140,7 +140,7 @@ if(SHVR_IS_CHECKED)
     # Rooms of tests/checked.cmake: linked with their sanitized objects.
     set(checked_tests ${unit_tests})
     list(FILTER checked_tests INCLUDE REGEX
-        "tests/unit/(annotation|base|bricks|components|formats|graph|jobs|look|movie|pieces|projects|reference|remote|session|tasks|volume)/")
+        "tests/unit/(annotation|base|bricks|components|formats|graph|jobs|look|movie|pieces|projects|ranks|reference|remote|session|tasks|volume)/")
     list(REMOVE_ITEM unit_tests ${checked_tests})
     file(GLOB reference_sources CONFIGURE_DEPENDS tests/reference/*.cpp)
     shvr_compile_together(shvr_checked_support ${reference_sources})

@@ -59,6 +59,9 @@ MAY_INCLUDE = {
     "engine/jobs": "engine/base",
     "engine/pages": "engine/base",
     "engine/pieces": "engine/base",
+    "engine/ranks": "engine/base",
+    "engine/ranks/alone": "engine/base engine/ranks",
+    "engine/ranks/mpi": "engine/base engine/ranks",
     "engine/tasks": "engine/base engine/pieces engine/volume engine/remote engine/look engine/components engine/formats/export engine/annotation "
     "engine/annotation/trace engine/annotation/measures engine/annotation/patterns engine/annotation/meshes "
     "engine/annotation/files engine/annotation/writers engine/projects engine/session engine/jobs",
@@ -121,7 +124,7 @@ MAY_INCLUDE = {
     "tools/bench": "engine/base engine/annotation engine/bricks engine/components engine/pages engine/projects engine/session "
     "tests/reference tools/golden tools/report",
     "tools/golden": "engine/base engine/annotation/script engine/session engine/live engine/pages shaders",
-    "tools": "engine/base engine/remote engine/pages engine/pieces engine/volume engine/graph engine/gpu engine/projects engine/annotation/script engine/annotation/trace "
+    "tools": "engine/base engine/remote engine/pages engine/pieces engine/ranks engine/volume engine/graph engine/gpu engine/projects engine/annotation/script engine/annotation/trace "
     "engine/annotation/work engine/annotation/writers engine/session engine/jobs engine/tasks engine/movie engine/picture engine/live "
     "haptics haptics/devices haptics/hid ui engine/study engine/study/report engine/workbench "
     "engine/workbench/touch engine/workbench/lists engine/workbench/sight "
@@ -156,6 +159,7 @@ THIRD_PARTIES = {
     "pugixml": (r"pugixml", r"engine/formats/tiff/|engine/annotation/trace/"),
     "xxHash": (r"xxhash", r"engine/(volume|remote|formats/zarr|projects|annotation/work)/"),
     "libcurl": (r"curl/", r"engine/remote/"),
+    "MPI": (r"mpi\.h", r"engine/ranks/mpi/"),
     "CLI11": (r"CLI/", r"tools/cli/"),
     "doctest": (r"doctest", r"tests/"),
 }
