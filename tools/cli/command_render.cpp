@@ -6,7 +6,9 @@
 #include "engine/live/previewer.h"
 #include "engine/picture/picture_file.h"
 #include "engine/session/picture_session.h"
+#include "tools/cli/array/ranks_job.h"
 #include "tools/cli/array/render_bands.h"
+#include "tools/cli/array/render_ranks.h"
 #include "tools/cli/cli.h"
 #include "tools/cli/figure/figure_options.h"
 #include "tools/cli/movie/render_movie.h"
@@ -76,8 +78,55 @@ void take_shorthands(RenderCommandOptions& options)
     }
 }
 
+/// Meets the processes that mpirun has started. Fails if they cannot share what is asked for.
+Ranks& ranks_for(const RenderCommandOptions& options)
+{
+    if (const std::optional<std::string> why = why_not_shared()) warn({*why}, options.common);
+    Ranks& ranks = join_ranks();
+    const bool is_movie = !options.movie.path.empty();
+    if (ranks.count() > 1 && (is_movie || !options.task.empty()))
+        throw UsageError(sentence(is_movie ? "--movie" : "--task", " is given, and mpirun has started ", ranks.count(),
+                                  " processes; expected -o, since they draw one picture together"));
+    return ranks;
+}
+
+/// The picture of several processes. Null on other ranks than 0, which neither write nor print.
+std::optional<RanksResult> draw_together(Ranks& ranks, Opened& opened, const RanksPicture& wanted,
+                                         const RenderCommandOptions& options, LongWork& work)
+{
+    const RanksWatch watch(ranks, options.output);
+    return render_with_ranks(ranks, opened, wanted, options.common, work);
+}
+
+/// What --json prints.
+Json report_of(Opened& opened, const Picture& picture, const std::optional<RanksResult>& together,
+               const RenderCommandOptions& options)
+{
+    Json passes = Json::array();
+    for (const gpu::PassReport& pass : picture.passes)
+        passes.push_back({{"name", pass.name}, {"gpu_ms", pass.timed ? Json(pass.gpu_ms) : Json(nullptr)}});
+    const glm::uvec2 size = opened.session.render.size;
+    Json report{{"output", options.output},
+                {"size", {size.x, size.y}},
+                {"complete", picture.complete && opened.is_whole() && (!together || together->is_whole)},
+                {"voxels_not_read", opened.voxels_not_read()},
+                {"detail", detail_of(*opened.renderer, opened.session.render)},
+                {"device", opened.renderer->device().traits().name},
+                {"passes", passes},
+                {"counters", counters_of(picture.passes)},
+                {"bytes", bytes_of(*opened.renderer)},
+                {"bricks", bricks_of(*opened.renderer)},
+                {"warnings", opened.warnings}};
+    if (together) {
+        report["split"] = together->split;
+        report["ranks"] = together->ranks;
+    }
+    return report;
+}
+
 void run_render(RenderCommandOptions options)
 {
+    Ranks& ranks = ranks_for(options);
     if (options.output.empty() == options.movie.path.empty())
         throw UsageError(options.output.empty() ? "--output is missing; expected -o for a picture, or --movie"
                                                 : "--output and --movie are given; expected one of them");
@@ -126,8 +175,17 @@ void run_render(RenderCommandOptions options)
         draw_band(job, opened, camera, {how, texts, over, left_out}, options.common, work);
         return job.report();
     }
-    PictureFile file(options.output, *opened.renderer, opened.session, camera, how, texts, over);
-    const Picture picture = draw(file, opened, options, work);
+    std::optional<RanksResult> together;
+    Picture picture;
+    if (ranks.count() > 1) {
+        together =
+            draw_together(ranks, opened, {camera, how, texts, over, options.input, options.output}, options, work);
+        if (!together) return;
+        picture = std::move(together->picture);
+    } else {
+        PictureFile file(options.output, *opened.renderer, opened.session, camera, how, texts, over);
+        picture = draw(file, opened, options, work);
+    }
     check_validation(opened);
     warn_of_gaps(opened, options.input, options.common);
     left_out.insert(left_out.begin(), picture.warnings.begin(), picture.warnings.end());
@@ -135,21 +193,7 @@ void run_render(RenderCommandOptions options)
     for (const std::string& warning : left_out) opened.warnings.push_back(warning);
     if (!options.common.json) return say(options.common, options.output);
 
-    Json passes = Json::array();
-    for (const gpu::PassReport& pass : picture.passes)
-        passes.push_back({{"name", pass.name}, {"gpu_ms", pass.timed ? Json(pass.gpu_ms) : Json(nullptr)}});
-    const glm::uvec2 size = opened.session.render.size;
-    print({{"output", options.output},
-           {"size", {size.x, size.y}},
-           {"complete", picture.complete && opened.is_whole()},
-           {"voxels_not_read", opened.voxels_not_read()},
-           {"detail", detail_of(*opened.renderer, opened.session.render)},
-           {"device", opened.renderer->device().traits().name},
-           {"passes", passes},
-           {"counters", counters_of(picture.passes)},
-           {"bytes", bytes_of(*opened.renderer)},
-           {"bricks", bricks_of(*opened.renderer)},
-           {"warnings", opened.warnings}});
+    print(report_of(opened, picture, together, options));
 }
 
 }  // namespace
@@ -192,6 +236,7 @@ void add_render(CLI::App& program)
         "transfer function, groups, light and cuts change along. --turntable turns at constant speed about the\n"
         "axis of the volume that points upwards, with --keys in addition. Each run makes the same frames. A .webm or\n"
         ".mp4 has an opaque background.\n\n"
+        "mpirun -n N shvr render draws one picture by N processes, if shvr was built with -DSHVR_MPI=ON.\n\n"
         "Example:\n  shvr render scan.nhdr -o scan.png --size 800x600 --camera front\n"
         "  shvr render project/ -o figure.png --scale-bar --legend --title 'Bellis' --text 40,52.5,7:stem\n"
         "  shvr render project/ --movie turn.webm --turntable 360 --frames 240\n"

@@ -17,6 +17,7 @@
 #include "engine/base/machine/machine.h"
 #include "engine/base/text.h"
 #include "engine/remote/address.h"
+#include "tools/cli/array/ranks_job.h"
 #include "tools/cli/array/split_job.h"
 #include "tools/cli/cli.h"
 #include "tools/cli/stop.h"
@@ -133,11 +134,10 @@ std::string while_doing()
     return what.empty() ? what : " while " + what;
 }
 
-int report(const char* message, Exit status)
+void report(const char* message)
 {
     // Replaces control characters: arguments and files may contain terminal escape sequences.
     std::fprintf(stderr, "shvr: %s\n", shvr::printable(message).c_str());
-    return status;
 }
 
 /// Makes malloc return large freed blocks to the system. By default glibc raises its mmap threshold up to 32 MiB, and
@@ -145,6 +145,51 @@ int report(const char* message, Exit status)
 void keep_heap_compact()
 {
     static_cast<void>(::mallopt(M_MMAP_THRESHOLD, 1 << 20));
+}
+
+/// Makes lavapipe start as many threads as the job was given: it heeds affinity, but no control groups.
+void limit_lavapipe()
+{
+    const int allowed = shvr::processors_allowed();
+    if (allowed < int(std::thread::hardware_concurrency()))
+        static_cast<void>(::setenv("LP_NUM_THREADS", std::to_string(allowed).c_str(), 0));
+}
+
+struct Outcome {
+    Exit status = Exit::done;
+    std::string message{};  ///< empty: the command did not fail
+};
+/// Runs the command.
+Outcome outcome_of(int argc, char** argv)
+{
+    try {
+        return {Exit(run(argc, argv))};
+    } catch (const shvr::UsageError& error) {
+        return {Exit::usage, error.what()};
+    } catch (const shvr::GateError& error) {
+        return {Exit::gate, error.what()};
+    } catch (const shvr::Disputed& error) {
+        return {Exit::world, shvr::sentence(error.what(),
+                                            "; both are kept; answer with --believe files, to take what is in the file "
+                                            "as a step that undo takes back, or --believe journal, with which the "
+                                            "next save keeps the file under another name")};
+    } catch (const shvr::JournalTaken& error) {
+        return {Exit::world,
+                shvr::sentence(error.what(), "; shvr view looks at it meanwhile and shvr export copies it")};
+    } catch (const std::bad_alloc&) {
+        return {Exit::world,
+                shvr::sentence("host memory is exhausted", while_doing(), ", with ", shvr::cli::peak_mebibytes(),
+                               " MiB in use; expected more, or less to hold: --budget-host bounds what a paged "
+                               "volume takes, shvr import --downscale or --crop makes it smaller")};
+    } catch (const std::system_error& error) {
+        if (error.code() != std::errc::resource_unavailable_try_again) return {Exit::world, error.what()};
+        return {Exit::world,
+                shvr::sentence("no further thread can be started", while_doing(), " (", error.what(),
+                               "); expected a higher limit of processes (ulimit -u) or of memory (ulimit -v), "
+                               "or fewer threads: --threads 1")};
+    } catch (const std::exception& error) {
+        return {Exit::world, error.what()};
+    }
 }
 
 }  // namespace
@@ -165,51 +210,14 @@ void parse_and_run(const std::vector<std::string>& arguments)
 
 }  // namespace shvr::cli
 
-/// Makes lavapipe start as many threads as the job was given: it heeds affinity, but no control groups.
-void limit_lavapipe()
-{
-    const int allowed = shvr::processors_allowed();
-    if (allowed < int(std::thread::hardware_concurrency()))
-        static_cast<void>(::setenv("LP_NUM_THREADS", std::to_string(allowed).c_str(), 0));
-}
-
 int main(int argc, char** argv)
 {
     keep_heap_compact();
     limit_lavapipe();
     shvr::cli::open_standard_streams();
+    shvr::cli::silence_other_ranks(argc, argv);
     shvr::cli::end_in_words();
-    try {
-        return run(argc, argv);
-    } catch (const shvr::UsageError& error) {
-        return report(error.what(), Exit::usage);
-    } catch (const shvr::GateError& error) {
-        return report(error.what(), Exit::gate);
-    } catch (const shvr::Disputed& error) {
-        return report(shvr::sentence(error.what(),
-                                     "; both are kept; answer with --believe files, to take what is in the file "
-                                     "as a step that undo takes back, or --believe journal, with which the "
-                                     "next save keeps the file under another name")
-                          .c_str(),
-                      Exit::world);
-    } catch (const shvr::JournalTaken& error) {
-        return report(
-            shvr::sentence(error.what(), "; shvr view looks at it meanwhile and shvr export copies it").c_str(),
-            Exit::world);
-    } catch (const std::bad_alloc&) {
-        return report(shvr::sentence("host memory is exhausted", while_doing(), ", with ", shvr::cli::peak_mebibytes(),
-                                     " MiB in use; expected more, or less to hold: --budget-host bounds what a paged "
-                                     "volume takes, shvr import --downscale or --crop makes it smaller")
-                          .c_str(),
-                      Exit::world);
-    } catch (const std::system_error& error) {
-        if (error.code() != std::errc::resource_unavailable_try_again) return report(error.what(), Exit::world);
-        return report(shvr::sentence("no further thread can be started", while_doing(), " (", error.what(),
-                                     "); expected a higher limit of processes (ulimit -u) or of memory (ulimit -v), "
-                                     "or fewer threads: --threads 1")
-                          .c_str(),
-                      Exit::world);
-    } catch (const std::exception& error) {
-        return report(error.what(), Exit::world);
-    }
+    const Outcome outcome = outcome_of(argc, argv);
+    if (!outcome.message.empty()) report(outcome.message.c_str());
+    return shvr::cli::leave_ranks(outcome.message) ? outcome.status : Exit::done;
 }
