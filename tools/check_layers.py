@@ -56,6 +56,7 @@ MAY_INCLUDE = {
     "engine/session": "engine/base engine/touch engine/volume engine/look engine/annotation engine/annotation/files "
     "engine/annotation/trace engine/remote engine/formats engine/formats/zarr engine/projects",
     "engine/movie": "engine/base engine/look engine/session",
+    "engine/session/words": "engine/base engine/annotation engine/session",
     "engine/jobs": "engine/base",
     "engine/pages": "engine/base",
     "engine/pieces": "engine/base",
@@ -69,7 +70,7 @@ MAY_INCLUDE = {
     "engine/annotation/trace engine/annotation/work shaders",
     "engine/picture": "engine/base engine/volume engine/passes engine/look engine/annotation/work engine/session engine/device",
     "engine/live": "engine/base engine/touch engine/volume engine/passes engine/look engine/annotation engine/annotation/trace "
-    "engine/annotation/work engine/session engine/picture shaders",
+    "engine/annotation/work engine/session engine/session/words engine/picture shaders",
     "haptics": "engine/base engine/touch",
     "haptics/hid": "engine/base haptics",
     "haptics/inverse3": "engine/base haptics",
@@ -87,33 +88,34 @@ MAY_INCLUDE = {
     "engine/workbench/actions": "engine/base engine/remote engine/annotation/operations engine/annotation/script engine/session engine/tasks engine/workbench/models",
     "engine/workbench/lists": "engine/base engine/look engine/annotation/trace engine/session engine/live "
     "engine/workbench/models engine/workbench/actions",
-    "engine/workbench/sight": "engine/base engine/look engine/annotation/trace engine/session engine/workbench/models "
+    "engine/workbench/forms": "engine/base engine/remote engine/tasks engine/workbench/models",
+    "engine/workbench/sight": "engine/base engine/look engine/annotation/trace engine/session engine/session/words engine/workbench/models "
     "engine/workbench/lists",
     "engine/workbench/edits": "engine/session haptics engine/workbench/touch engine/workbench/models "
     "engine/workbench/actions",
-    "engine/workbench/bindings": "engine/base engine/remote engine/session engine/workbench/models engine/workbench/actions "
+    "engine/workbench/bindings": "engine/base engine/remote engine/session engine/session/words engine/workbench/models engine/workbench/actions "
     "engine/workbench/sight engine/workbench/edits engine/workbench/appearance",
-    "engine/workbench/words": "engine/base engine/annotation/trace engine/annotation/work engine/session "
-    "engine/workbench/models engine/workbench/bindings",
-    "engine/workbench/document": "engine/base engine/remote engine/annotation/trace engine/annotation/work engine/session engine/jobs "
+    "engine/workbench/words": "engine/base engine/annotation/trace engine/annotation/work engine/session engine/session/words engine/tasks "
+    "engine/workbench/models engine/workbench/bindings engine/workbench/forms",
+    "engine/workbench/document": "engine/base engine/remote engine/annotation/trace engine/annotation/work engine/session engine/session/words engine/jobs "
     "engine/picture engine/live haptics engine/workbench/touch engine/workbench/models engine/workbench/actions "
     "engine/workbench/sight",
     "engine/workbench/desk": "engine/base engine/session engine/jobs engine/workbench/touch engine/workbench/models "
     "engine/workbench/actions engine/workbench/lists engine/workbench/sight engine/workbench/bindings "
     "engine/workbench/document",
-    "engine/workbench/services": "engine/base engine/remote engine/look engine/annotation/operations engine/annotation/work engine/session engine/tasks engine/live "
+    "engine/workbench/services": "engine/base engine/remote engine/look engine/annotation/operations engine/annotation/work engine/session engine/session/words engine/tasks engine/live "
     "engine/workbench/models engine/workbench/actions engine/workbench/sight engine/workbench/edits "
     "engine/workbench/words engine/workbench/document engine/workbench/desk",
     "engine/workbench": "engine/base engine/workbench/actions engine/workbench/lists engine/workbench/desk "
     "engine/workbench/services",
     "ui/files": "engine/base engine/remote engine/formats",
-    "ui/panels": "engine/base engine/session engine/workbench/appearance engine/workbench/curves engine/workbench/models "
+    "ui/panels": "engine/base engine/session engine/session/words engine/workbench/appearance engine/workbench/curves engine/workbench/models "
     "engine/workbench/actions engine/workbench/lists engine/workbench/sight engine/workbench/edits "
     "engine/workbench/bindings",
     "ui/panels/look": "engine/session engine/workbench/curves engine/workbench/models engine/workbench/actions "
     "engine/workbench/edits engine/workbench/bindings ui/panels",
     "ui/panels/dialogs": "engine/base engine/session engine/workbench/models engine/workbench/actions "
-    "engine/workbench/lists engine/workbench/bindings ui/files ui/panels",
+    "engine/workbench/lists engine/workbench/bindings engine/workbench/forms engine/tasks ui/files ui/panels",
     "ui/panels/touch": "engine/workbench/models engine/workbench/lists engine/workbench/edits engine/workbench/bindings "
     "engine/workbench/words ui/panels",
     "ui": "engine/base engine/gpu engine/live haptics engine/workbench engine/workbench/models engine/workbench/sight "

@@ -274,7 +274,10 @@ bool App::ui_has_mouse(const InputEvent& event) const
 bool App::ui_has_key(const KeyEvent& event) const
 {
     if (field_has_keys() || choosers_have_keys() || bench_->model().shows_palette) return true;
-    if (!bench_->model().awaits_key.empty()) return false;  // the next key, whichever it is, is bound to a shortcut
+    // Keys typed while a dialog is shown are no shortcuts: the scene behind the dialog must not change.
+    const bool is_typed = (event.mods & (GLFW_MOD_CONTROL | GLFW_MOD_ALT)) == 0 && event.key < GLFW_KEY_ESCAPE;
+    if (dialog_is_shown() && is_typed) return true;
+    if (!bench_->model().awaits_key.empty()) return false;  // any key may be the one to be bound
     return panels_have_keyboard() && moves_in_panels(event);
 }
 
@@ -308,7 +311,7 @@ bool App::decides_who_has_keys(const KeyEvent& event, bool is_for_ui) const
     if (!event.pressed) return false;
     const bool ends = event.key == GLFW_KEY_ENTER || event.key == GLFW_KEY_KP_ENTER || event.key == GLFW_KEY_ESCAPE;
     return (ends && is_for_ui) || std::ranges::any_of(actions_, [](const Action& action) {
-               return action.is<AskOpen>() || action.is<ShowPalette>();
+               return action.is<AskOpen>() || action.is<ShowPalette>() || action.is<ShowDialog>();
            });
 }
 
@@ -339,7 +342,7 @@ void App::handle_events(double timeout_s)
     viewport_.wait(window_.now_s(), actions_);
     apply_all();
     const double now = window_.now_s();
-    if (!field_has_keys() && !choosers_have_keys() && !model().shows_palette)
+    if (!field_has_keys() && !choosers_have_keys() && !dialog_is_shown() && !model().shows_palette)
         keyboard_.hold(
             std::min(now - last_keys_s_, 0.1), mods_held(window_), [this](int key) { return window_.is_down(key); },
             model(), actions_);

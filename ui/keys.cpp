@@ -125,6 +125,10 @@ void Keyboard::handle(const KeyEvent& event, const Model& model, bool ui_has_key
         actions.push_back(shortcut->action(model, rate(*shortcut, event.mods)));
         if (lasts) held.lasting = shortcut;
     }
+    // Actions that the user bound: by the key's name in the layout, as they were bound.
+    if (!event.repeated)
+        for (const Action& action : model.keymap.actions_for(chord_with(name_in_layout(event), event.mods)))
+            actions.push_back(action);
     if (!event.repeated && known == held_.end()) held_.push_back(held);
 }
 

@@ -125,6 +125,19 @@ std::string kept_in_words(const StrokeResult& result, const GroupNames& name_of)
     return words;
 }
 
+/// Why a brush found no voxel, if it did not.
+const char* why_none_found(Brush brush)
+{
+    switch (brush) {
+        case Brush::fill: break;
+        case Brush::flood: return "the voxel at the centre of the probe is below the paint threshold";
+        case Brush::speckle:
+            return "no part at or above the paint threshold lies wholly inside the probe (a larger probe holds larger "
+                   "parts)";
+    }
+    return "no voxel here is at or above the paint threshold";
+}
+
 std::string nothing_in_words(const StrokeResult& result, const GroupNames& name_of)
 {
     const PaintOp& stroke = result.stroke;
@@ -134,7 +147,7 @@ std::string nothing_in_words(const StrokeResult& result, const GroupNames& name_
     if (stroke.erases() && stroke.only_unpainted) return sentence(nothing, ": the brush is held to unpainted voxels");
     const std::string kept = kept_in_words(result, name_of);
     if (!kept.empty()) return nothing + kept;
-    return sentence("The stroke changed nothing: no voxel here is at or above the paint threshold, or all are ",
+    return sentence("The stroke changed nothing: ", why_none_found(stroke.brush), ", or all are ",
                     stroke.erases()       ? "unpainted"
                     : stroke.paints_group ? "painted"
                                           : "raised",

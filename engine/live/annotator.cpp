@@ -1,10 +1,12 @@
 #include "engine/live/annotator.h"
 
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "engine/session/kept_settings.h"
 #include "engine/session/lasting_settings.h"
+#include "engine/session/words/number_words.h"
 #include "engine/volume/content_hash.h"
 #include "engine/volume/grid.h"
 
@@ -23,11 +25,14 @@ VoxelBox reach_of_raised(const VoxelBox& raised, const Size3& size)
 
 std::string label_of(const PaintOp& op)
 {
-    const std::string brush = row_of(op.brush).name;
-    if (!op.density) return sentence(brush, ", group ", int(op.group));
+    const std::string with = sentence(" with ", row_of(op.brush).name);
+    const std::string painted = op.erases() ? "erased voxels" : sentence("painted group ", int(op.group));
+    if (!op.density) return painted + with;
     const double offset = op.erases() ? 0.0 : *op.density->offset;
-    const std::string density = offset == 0.0 ? "density reset" : sentence("density ", offset > 0.0 ? "+" : "", offset);
-    return op.paints_group ? sentence(brush, ", group ", int(op.group), ", ", density) : sentence(brush, ", ", density);
+    const std::string density = offset == 0.0 ? "reset the density"
+                                              : sentence(offset > 0.0 ? "raised" : "lowered", " the density by ",
+                                                         number_in_words(std::abs(offset)));
+    return (op.paints_group ? painted + " and " + density : density) + with;
 }
 
 }  // namespace

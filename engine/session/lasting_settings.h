@@ -19,7 +19,5 @@ SettingValues normalized_settings(const SettingValues& values);
 SettingValues without_overridden(SettingValues values, const std::vector<std::string>& settings);
 /// Copies the members that "picture" covers.
 void take_picture(RenderSettings& to, const RenderSettings& from);
-/// Describes the differences, as in "light: ambient 0.2 to 0.3", "groups: 3 color" or "transfer function".
-std::string difference_of(const SettingValues& before, const SettingValues& after);
 
 }  // namespace shvr

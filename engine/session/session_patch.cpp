@@ -35,13 +35,6 @@ json difference(const json& before, const json& after)
     return patch;
 }
 
-SettingValues texts_of(const json& settings)
-{
-    SettingValues texts;
-    for (const auto& [name, value] : settings.items()) texts[name] = value.dump();
-    return texts;
-}
-
 }  // namespace
 
 std::string patch_between(const Session& before, const Session& after)
@@ -91,11 +84,6 @@ Session patched(const Session& session, std::string_view patch)
     changed.interaction = read.interaction;
     changed.probe = read.probe;
     return changed;
-}
-
-std::string difference_in_words(const Session& before, const Session& after)
-{
-    return difference_of(texts_of(settings_of(before)), texts_of(settings_of(after)));
 }
 
 }  // namespace shvr

@@ -19,7 +19,5 @@ std::string merged(std::string_view object, std::string_view patch, const std::s
 /// Returns the session with the patch applied. Fails on unknown keys and on values out of range, with key, value and
 /// expected values. A preset of a transfer function stays a name, for `transfer_function_of`.
 Session patched(const Session& session, std::string_view patch);
-/// Describes the differences, as in "light: ambient 0.2 to 0.3", "groups: 3 color" or "transfer function".
-std::string difference_in_words(const Session& before, const Session& after);
 
 }  // namespace shvr

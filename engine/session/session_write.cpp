@@ -133,72 +133,6 @@ std::string laid_out(const OrderedJson& value, const std::string& indent, bool m
     return value.is_array() ? "[" + text + "]" : "{" + text + "}";
 }
 
-/// Formats a value for people to read; for points and similar items, states only their number.
-std::string in_words(const OrderedJson& value)
-{
-    if (value.is_number_float()) return sentence(value.get<double>());
-    if (value.is_string()) return value.get<std::string>();
-    if (!value.is_array()) return value.dump();
-    if (!value.empty() && value.front().is_object()) return sentence(value.size(), " points");
-    std::string text;
-    for (const OrderedJson& one : value) text += (text.empty() ? "(" : ", ") + in_words(one);
-    return text.empty() ? "none" : text + ")";
-}
-
-struct ChangedKey {
-    std::string path, from, to;  ///< values for people to read; empty if there is no value
-};
-
-/// Adds the keys whose values differ in a section. An array counts as one value.
-void add_changes(const OrderedJson& was, const OrderedJson& is, const std::string& path, std::vector<ChangedKey>& found)
-{
-    if (!was.is_object() || !is.is_object()) {
-        // An object that is added or removed as a whole is described by its name alone.
-        const auto words = [](const OrderedJson& value) {
-            return value.is_null() || value.is_object() ? std::string() : in_words(value);
-        };
-        if (was != is) found.push_back({path, words(was), words(is)});
-        return;
-    }
-    const auto member = [](const OrderedJson& object, const std::string& name) {
-        const auto at = object.find(name);
-        return at == object.end() ? OrderedJson() : *at;
-    };
-    for (const OrderedJson* object : {&was, &is})
-        for (const auto& item : object->items())
-            if (object == &was || !was.contains(item.key()))
-                add_changes(member(was, item.key()), member(is, item.key()),
-                            path.empty() ? item.key() : path + " " + item.key(), found);
-}
-
-std::string in_words(const ChangedKey& changed)
-{
-    std::string path = changed.path;
-    std::ranges::replace(path, '_', ' ');
-    if (path == "occlusion mapping") path = "occlusion curve";  // the window uses one name for both
-    if (changed.from == changed.to) return path;
-    if (changed.to.empty()) return sentence(path, " ", changed.from, " given up");
-    if (changed.from.empty()) return sentence(path, " ", changed.to);
-    return sentence(path, " ", changed.from, " to ", changed.to);
-}
-
-/// Describes the difference of a section: its name and, if only a few values differ, the names of these values.
-std::string difference_of(std::string name, const std::string& before, const std::string& after)
-{
-    constexpr size_t MOST = 3;
-    std::ranges::replace(name, '_', ' ');
-    if (before.empty() || after.empty() || name == "transfer function") return name;
-    const OrderedJson was = OrderedJson::parse(before), is = OrderedJson::parse(after);
-    if (name == "measurements") return sentence(name, ": ", was.size(), " to ", is.size());
-    std::vector<ChangedKey> changes;
-    add_changes(was, is, {}, changes);
-    if (changes.size() > MOST) return name;
-    std::string text;
-    for (const ChangedKey& changed : changes)
-        if (!changed.path.empty()) text += (text.empty() ? ": " : ", ") + in_words(changed);
-    return name + text;
-}
-
 SettingValues sections_of(const OrderedJson& object)
 {
     SettingValues values;
@@ -229,17 +163,6 @@ SettingValues kept_settings(const Session& session)
     Session written;
     take_kept_sections(written, session);
     return sections_of(Writer::write({}, [&](Fields& f) { kept_fields(f, written); }));
-}
-
-std::string difference_of(const SettingValues& before, const SettingValues& after)
-{
-    std::string text;
-    for (const auto& [name, value] : after) {
-        const auto was = before.find(name);
-        const std::string old = was == before.end() ? std::string() : was->second;
-        if (old != value) text += (text.empty() ? "" : "; ") + difference_of(name, old, value);
-    }
-    return text;
 }
 
 std::string to_text(const Session& session, const std::filesystem::path& folder)

@@ -9,6 +9,7 @@
 #include "engine/base/text.h"
 #include "engine/projects/import_piece.h"
 #include "engine/remote/address.h"
+#include "engine/tasks/import_estimate.h"
 #include "engine/tasks/task_parts.h"
 #include "engine/volume/grid.h"
 #include "engine/volume/unit.h"
@@ -29,17 +30,6 @@ void crop_fields(Fields& f, VoxelBox& crop)
     corner("lower", crop.lower, {"first voxel of the box", "voxels"});
     corner("upper", crop.upper, {"the one after its last", "voxels"});
     f.check("", glm::all(glm::lessThan(crop.lower, crop.upper)), "a lower corner that is below the upper one");
-}
-
-std::unique_ptr<VolumeSource> open_as_told(const ImportTask& task)
-{
-    const OpenOptions& choice = task.choice;
-    const std::string volume = task.volume.string();
-    if (task.raw.empty()) return open_volume(volume, choice);
-    RawLayout layout = parse_raw_layout(task.raw);
-    if (choice.spacing) layout.spacing = *choice.spacing;
-    if (!choice.unit.empty()) layout.unit = choice.unit;
-    return open_raw(volume, layout);
 }
 
 /// Refuses a project that is, or contains, the imported file, by any path: replacing the project would remove
@@ -229,7 +219,7 @@ ImportResult timed(const ImportTask& task, ProgressReporter& reporter, const Run
     using Clock = std::chrono::steady_clock;
     if (task.overwrite) refuse_own_source(task);
     const Clock::time_point begin = Clock::now();
-    const std::unique_ptr<VolumeSource> source = open_as_told(task);
+    const std::unique_ptr<VolumeSource> source = open_for_import(task);
     Gaps gaps = gaps_of(task.allows_incomplete, task.names);
     const GapSource readable(*source, gaps);
     ImportListener listener(task, source->info().type, reporter);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/base/text.h"
+#include "engine/workbench/desk/declined.h"
 
 namespace shvr::ui {
 
@@ -62,7 +63,10 @@ bool Workbench::apply(const Action& action)
         say(sentence(row_of(action).name, ": ", told_of(error)), Weight::error);
         return false;
     } catch (const std::exception& error) {
-        say(told_of(error), Weight::error);
+        // What was unavailable has not failed: the person is told why, like of anything that was done.
+        const bool is_declined =
+            dynamic_cast<const Declined*>(&error) != nullptr || !ui::why_not(model(), action).empty();
+        say(told_of(error), is_declined ? Weight::done : Weight::error);
         return false;
     }
 }

@@ -77,6 +77,7 @@ State state_of(const ui::Workbench& bench, const std::filesystem::path& folder)
     state["preferences"] = sentence(model.shows_preferences);
     state["awaits_key"] = sentence(model.awaits_key);
     state["asks"] = sentence(model.asks_what_to_open);
+    state["dialog"] = spelled(model.dialog);
     state["load_preview"] = model.load_preview ? model.load_preview->path.string() : "";
     state["unclear_file"] = model.unclear_file ? model.unclear_file->path.string() : "";
     state["candidate"] = model.candidate ? model.candidate->path.string() : "";

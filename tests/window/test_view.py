@@ -46,7 +46,7 @@ class View(Seen):
         self.assertGreater(report["voxels_in_group"].get("3", 0), 50, report["messages"])
         self.assertNotIn("7", report["voxels_in_group"])  # undone
         self.assertEqual((report["undoable"], report["redoable"]), (1, 1))
-        self.assertTrue(any(line.startswith("Undone: flood fill, group 7") for line in report["messages"]))
+        self.assertTrue(any(line.startswith("Undone: painted group 7 with flood fill") for line in report["messages"]))
         self.assertTrue((self.folder / "paint.mask").exists())
 
         saved = json.loads(session.read_text())
@@ -153,7 +153,7 @@ class View(Seen):
         said = "\n".join(report["messages"])
         for line in ["Node 0 added", "Node 2 added, linked with node 1", "Node 2 is linked with the nearest node",
                      "Node 2 was moved", "Node 1 is selected", "Node 1 belongs to group 5", "Node 1 has another radius",
-                     "Deleted: 1 node, 2 internodes", "Undone: delete"]:
+                     "Deleted: 1 node, 2 internodes", "Undone: deleted part of the trace"]:
             self.assertIn(line, said)
         self.assertEqual((report["undoable"], report["redoable"]), (7, 1))
 
@@ -239,7 +239,7 @@ class View(Seen):
         self.check_key("Ctrl+Z", "undo")
         report = self.finish()
         self.assertIn("none of them is lost", " ".join(report["messages"]))
-        self.assertTrue(any(message.startswith("Undone: cut: lower") for message in report["messages"]), report["messages"])
+        self.assertTrue(any(message.startswith("Undone: moved the near ") for message in report["messages"]), report["messages"])
         self.assertGreater(report["voxels_in_group"]["3"], 0)
         kept = self.in_file(session)["cut"]["lower"]
         self.assertGreater(kept[0], 0.0)

@@ -35,7 +35,9 @@ MAKES = {"step_back": "set probe.tool", "single_view": "set view.arrangement", "
 REFUSED = {"regroup_0": "roup 0 is the eraser"}
 # Shortcuts that open a window which takes keys or hides what follows: pressed again, or closed by Escape.
 TWICE = {"help", "preferences", "full_screen", "guide", "volume", "meshes"}
-ESCAPED = {"palette": "Find anything", "open": "Open a volume", "focus_panels": "", "focus_menu": ""}   # window of each
+ESCAPED = {"palette": "Find anything", "open": "Open a volume", "focus_panels": "", "focus_menu": "",
+           "save_as": "Continue under", "load_annotation": "Load annotation", "import_scan": "Import as project",
+           "export_work": "Export annotation"}   # window of each
 
 
 def kind_of(chord):

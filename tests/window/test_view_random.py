@@ -18,7 +18,7 @@ EVENTS = 200 if os.environ.get("SHVR_SLOW") == "1" else 40
 SIZE = (680, 420)   # small, since replaying draws it for every action
 # They ask for files, leave the window, cover the picture or take long; each has a test of its own.
 LEFT_OUT = {"quit", "open", "palette", "full_screen", "large_screenshot", "screenshot", "focus_menu", "focus_panels",
-            "help", "preferences", "side_panels"}
+            "help", "preferences", "side_panels", "save_as", "load_annotation", "import_scan", "export_work"}
 
 
 class Random(Seen):

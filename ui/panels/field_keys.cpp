@@ -55,4 +55,9 @@ bool field_has_keys()
     return is_typed_in || awaited_in_frame == context.FrameCount;
 }
 
+bool dialog_is_shown()
+{
+    return ImGui::GetTopMostPopupModal() != nullptr;
+}
+
 }  // namespace shvr::ui

@@ -31,5 +31,7 @@ private:
 
 /// Returns whether keys go to a text field, according to the last drawn frame. Call between frames.
 bool field_has_keys();
+/// Returns whether a dialog is shown that must be answered first, after the frame that was drawn last. Between frames.
+bool dialog_is_shown();
 
 }  // namespace shvr::ui

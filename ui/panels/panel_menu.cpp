@@ -70,12 +70,12 @@ void file_menu(const Model& model, Actions& actions)
     }
     action_item("Open the example", OpenExample{}, model, actions);
     shortcut_item("save", model, actions);
-    if (reasoned_item("Save as...", why_not(model, SaveAs{}))) ask_for_name(model);
+    shortcut_item("save_as", model, actions);
     action_item("Copy the session", CopySession{}, model, actions);
     action_item("Revert to the last save", RevertOp{}, model, actions);
     ImGui::Separator();
-    task_menu(model);
-    if (reasoned_item("Load annotation...", model.is_open ? "" : "nothing is open")) ask_what_to_take(model);
+    task_menu(model, actions);
+    shortcut_item("load_annotation", model, actions);
     if (model.is_open)
         hint("A mask, offsets, a trace or a transfer function, into this scan. Or drop it on the window.");
     ImGui::Separator();

@@ -73,7 +73,7 @@ float read_only_banner(const Model& model, const glm::vec2& begin, float width, 
 float remote_banner(const Model& model, const glm::vec2& begin, float width, Actions& actions)
 {
     begin_banner("On another machine", begin, width);
-    if (ImGui::Button("Import as project...")) ask_to_import(model.session.volume_path);
+    if (ImGui::Button("Import as project...")) ask_to_import(model.session.volume_path, actions);
     hint("copies the volume to this machine, and opens the copy");
     ImGui::SameLine();
     if (ImGui::Button("Annotate without a copy...")) ask_for_session_of_remote(model);

@@ -126,7 +126,13 @@ void palette_window(const Model& model, Actions& actions)
         ImGui::TextWrapped("%s", entries[size_t(palette.chosen)].why_not.c_str());
     if (is_entered && entries.empty()) palette.takes_keys = true;  // Enter has made the field release the keyboard
     if (is_entered && !entries.empty()) choose(entries[size_t(palette.chosen)], actions);
-    // While the palette is shown, keys do not reach the picture, so a click outside closes the palette.
+    const PaletteEntry* const chosen = entries.empty() ? nullptr : &entries[size_t(palette.chosen)];
+    const bool can_bind = chosen && !chosen->bound_as.empty();
+    if (can_bind && (ImGui::SmallButton("Give it a key (Insert)") || was_pressed(ImGuiKey_Insert))) {
+        actions.push_back(ShowPalette{false});
+        actions.push_back(AwaitKey{chosen->bound_as});
+    }
+    // No key reaches the picture while this is shown, so a click elsewhere ends it.
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !ImGui::IsWindowHovered(HOVERED_AT_ALL))
         actions.push_back(ShowPalette{false});
     if (!keys.are_awaited() && !field_is_active && !ImGui::IsAnyItemActive()) palette.takes_keys = true;

@@ -91,25 +91,23 @@ void open_dialog(const Model& model, Actions& actions);
 /// it is waiting for the disk.
 bool choosers_have_keys();
 bool choosers_are_busy();
-/// Shows the dialog for saving under another name, from the next frame on.
-void ask_for_name(const Model& model);
-/// Asks for the scan to which the open label image belongs, opens that scan, and loads the label image into it.
+/// Asks for the scan to which the open label image belongs, opens that, and loads the label image into it.
 void ask_for_scan_of_labels(const Model& model);
 /// Asks for the session file on this machine that is to keep annotation of the open volume at an address.
 void ask_for_session_of_remote(const Model& model);
-/// States what loading a file would change, and asks whether to load it.
+/// Draws the dialog that loads annotation: the file, what it is, and what loading it would change.
 void load_preview_dialog(const Model& model, Actions& actions);
-/// Shows the dialog that asks for a file with annotation or a transfer function, from the next frame on.
-void ask_what_to_take(const Model& model);
+/// Returns whether that dialog, as last drawn, waits for the disk.
+bool load_dialog_waits();
+/// Draws the dialogs for saving under another name and for loading annotation.
 void name_and_take_dialogs(const Model& model, Actions& actions);
-/// Draws the items for exporting, importing, labelling and comparing in the File menu; and their dialogs.
-void task_menu(const Model& model);
-/// Returns whether the dialog of a task was waiting for the disk when it was last drawn.
+/// Draws items of the menu File for exporting, importing, labelling and comparing; and their dialogs.
+void task_menu(const Model& model, Actions& actions);
+/// Returns whether a dialog of a task, as last drawn, waits for the disk.
 bool task_dialog_waits();
-/// Shows the dialog that makes a project of `volume`, from the next frame on.
-void ask_to_import(const std::filesystem::path& volume);
-/// Draws the items for opening with options and for correcting the spacing in the File menu; and their dialogs.
-void load_menu(const Model& model);
+/// Shows the dialog that makes a project of that volume, from the next frame on.
+void ask_to_import(const std::filesystem::path& volume, Actions& actions);
+/// Draws the dialogs for opening with options and for correcting the spacing.
 void load_dialogs(const Model& model, Actions& actions);
 void task_dialogs(const Model& model, Actions& actions);
 /// Draws the list of background jobs, centred, with its lower edge at `lower_middle`.

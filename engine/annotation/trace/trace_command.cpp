@@ -20,7 +20,7 @@ public:
         const TraceNode node{at(op.at), length(op.radius_voxels.value_or(defaults_.radius_voxels)),
                              op.group.value_or(defaults_.group)};
         check_place(op.at, node.radius);
-        return {sentence("node, group ", int(node.group)), add_node(trace_, node), {}};
+        return {sentence("added a node in group ", int(node.group)), add_node(trace_, node), {}};
     }
     TraceEffect operator()(const SelectOp& op) const
     {
@@ -57,7 +57,7 @@ public:
                      "; expected one to link to");
             check_distance("other node", glm::length(trace_.node(*to).position - at(*op.near)), op.within_voxels);
         }
-        return {"link", link_selected(trace_, *to), {}};
+        return {"linked two nodes", link_selected(trace_, *to), {}};
     }
     TraceEffect operator()(const MoveOp& op) const
     {
@@ -67,26 +67,29 @@ public:
                 const TraceNode& node = trace_.node(number);
                 check_place(node.position / defaults_.spacing + by, node.radius);
             }
-            return {"move", shift_selected(trace_, at(by)), {}};
+            return {"moved a segment", shift_selected(trace_, at(by)), {}};
         }
         const std::optional<uint32_t> moved = trace_.selection().node();
         if (moved) check_place(op.to, trace_.node(*moved).radius);
-        return {"move", move_selected(trace_, at(op.to)), {}};
+        return {"moved a node", move_selected(trace_, at(op.to)), {}};
     }
-    TraceEffect operator()(const DeleteOp&) const { return {"delete", delete_selected(trace_), {}}; }
+    TraceEffect operator()(const DeleteOp&) const { return {"deleted part of the trace", delete_selected(trace_), {}}; }
     TraceEffect operator()(const GroupOp& op) const
     {
-        return {sentence("group ", int(op.group)), set_group_of_selected(trace_, op.group), {}};
+        return {
+            sentence("moved part of the trace to group ", int(op.group)), set_group_of_selected(trace_, op.group), {}};
     }
     TraceEffect operator()(const RadiusOp& op) const
     {
         const std::optional<double> radius = op.radius_voxels ? std::optional(length(*op.radius_voxels)) : std::nullopt;
         switch (op.of) {
-            case RadiusOp::Of::nodes: return {"size", set_node_radii(trace_, op.group, radius.value()), {}};
-            case RadiusOp::Of::internodes: return {"size", set_internode_radius(trace_, op.group, radius), {}};
+            case RadiusOp::Of::nodes:
+                return {"changed the radius of nodes", set_node_radii(trace_, op.group, radius.value()), {}};
+            case RadiusOp::Of::internodes:
+                return {"changed the radius of internodes", set_internode_radius(trace_, op.group, radius), {}};
             case RadiusOp::Of::selected: break;
         }
-        return {"size", set_radius_of_selected(trace_, radius.value()), {}};
+        return {"changed a radius", set_radius_of_selected(trace_, radius.value()), {}};
     }
 
 private:
@@ -100,7 +103,7 @@ private:
         const TraceNode node{at(op.at), op.radius_voxels ? length(*op.radius_voxels) : here,
                              op.group.value_or(internode.group)};
         check_place(op.at, node.radius);
-        return {sentence("node in internode ", number), divide_internode(trace_, number, node), {}};
+        return {sentence("added a node in internode ", number), divide_internode(trace_, number, node), {}};
     }
     glm::dvec3 at(const glm::dvec3& voxel) const { return voxel * defaults_.spacing; }
     double length(double voxels) const { return voxels * defaults_.spacing.x; }

@@ -23,7 +23,7 @@ struct TraceDefaults {
 };
 
 struct TraceEffect {
-    std::string label;                        ///< label of the command: "node, group 2"
+    std::string label;                        ///< label of the command: "added a node in group 2"
     std::vector<TraceChange> changes;         ///< empty if nothing would change
     std::optional<TraceSelection> selection;  ///< the new selection
 };

@@ -46,7 +46,7 @@ std::vector<Change> as_changes(std::vector<Record> records)
 }
 
 struct Command {
-    std::string label;  ///< text for the status bar: "flood fill, group 3"
+    std::string label;  ///< what was done, for the history: "painted group 3 with flood fill"
     std::vector<Change> changes;
 };
 

@@ -2,6 +2,7 @@
 // Actions on the window, on keys and on preferences.
 
 #include "engine/workbench/actions/action_row.h"
+#include "engine/workbench/models/dialogs.h"
 
 namespace shvr::ui {
 
@@ -80,6 +81,11 @@ struct FocusOn {
     std::string what = "panels";  ///< or "menu"
 };
 
+/// Shows a dialog that asks for files and options, instead of the one that is shown; none closes it.
+struct ShowDialog {
+    Dialog dialog = Dialog::none;
+};
+
 struct ShowFullScreen {
     bool on = true;
 };
@@ -152,6 +158,16 @@ inline constexpr auto WINDOW_ACTIONS = std::tuple{
     row<ShowPreferences, WindowState>(
         {"show_preferences", "Preferences", WINDOW_GROUP, "shows or hides theme, sizes and keys", Needs::nothing},
         [](auto& f, ShowPreferences& a) { f.flag("on", a.on, {}); }),
+    row<ShowDialog, WindowState>(
+        {"show_dialog", "Show a dialog", WINDOW_GROUP, "shows a dialog that asks for files and options, or closes it",
+         Needs::nothing},
+        [](auto& f, ShowDialog& a) { f.choice("dialog", a.dialog, {.meaning = "which one", .is_required = true}); },
+        [](const auto& model, const ShowDialog& action) -> std::string {
+            if (!needs_document(action.dialog)) return {};
+            if (!model.is_open) return "nothing is open";
+            const bool is_saved = action.dialog == Dialog::save_as || action.dialog == Dialog::spacing;
+            return is_saved ? why_not_edited(model) : std::string();
+        }),
     row<FocusOn, WindowState>({"focus", "Use panels by keyboard", WINDOW_GROUP,
                                "gives the keyboard to the panels or to the menu", Needs::nothing},
                               [](auto& f, FocusOn& a) {

@@ -6,6 +6,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
+#include "engine/workbench/actions/action_rows.h"
 
 namespace shvr::ui {
 
@@ -54,6 +55,27 @@ std::vector<Chord> chords_in(std::string_view text)
     return chords;
 }
 
+std::vector<Chord> chords_of_change(const std::string& id, const std::vector<std::string>& texts)
+{
+    std::vector<Chord> chords;
+    for (const std::string& text : texts) {
+        const std::optional<Chord> chord = chord_of(text);
+        if (!chord) fail("keys: ", id, " is '", text, "'; expected a key such as Ctrl+Z, F5, PageUp or [");
+        chords.push_back(*chord);
+    }
+    return chords;
+}
+
+/// Returns the action that an id other than a shortcut's states.
+Action action_of_id(const std::string& id)
+{
+    try {
+        return action_of_text(id);
+    } catch (const Error&) {
+        fail("keys: '", id, "' is no shortcut; expected one listed in the help window, or an action");
+    }
+}
+
 bool means(const Shortcut& shortcut, const Chord& bound, Chord pressed)
 {
     if (shortcut.is_slowed()) pressed.shift = bound.shift;
@@ -93,15 +115,11 @@ Keymap::Keymap(KeySet set, const Changes& changes)
 {
     for (const Shortcut& shortcut : shortcuts()) chords_.push_back(chords_in(shortcut.keys[size_t(set)]));
     for (const auto& [id, texts] : changes) {
-        const Shortcut* const shortcut = shortcut_named(id);
-        if (!shortcut) fail("keys: '", id, "' is no shortcut; expected one listed in the help window");
-        std::vector<Chord>& chords = chords_[size_t(shortcut - shortcuts().data())];
-        chords.clear();
-        for (const std::string& text : texts) {
-            const std::optional<Chord> chord = chord_of(text);
-            if (!chord) fail("keys: ", id, " is '", text, "'; expected a key such as Ctrl+Z, F5, PageUp or [");
-            chords.push_back(*chord);
-        }
+        const std::vector<Chord> chords = chords_of_change(id, texts);
+        if (const Shortcut* const shortcut = shortcut_named(id))
+            chords_[size_t(shortcut - shortcuts().data())] = chords;
+        else
+            bound_.push_back({id, action_of_id(id), chords});
     }
 }
 
@@ -118,6 +136,20 @@ std::vector<const Shortcut*> Keymap::shortcuts_for(const Chord& chord) const
     if (std::ranges::any_of(found, is_exact))
         std::erase_if(found, [&](const Shortcut* each) { return !is_exact(each); });
     return found;
+}
+
+std::vector<Action> Keymap::actions_for(const Chord& chord) const
+{
+    std::vector<Action> found;
+    for (const Bound& each : bound_)
+        if (std::ranges::find(each.chords, chord) != each.chords.end()) found.push_back(each.action);
+    return found;
+}
+
+std::string Keymap::text_of_action(const std::string& action) const
+{
+    const auto found = std::ranges::find(bound_, action, &Bound::text);
+    return found == bound_.end() || found->chords.empty() ? std::string() : in_words(found->chords.front());
 }
 
 const std::vector<Chord>& Keymap::chords_of(const Shortcut& shortcut) const
@@ -143,15 +175,16 @@ std::vector<const Shortcut*> Keymap::rivals_of(const Shortcut& shortcut) const
 
 std::vector<std::string> Keymap::conflicts() const
 {
-    std::map<Chord, std::vector<const Shortcut*>> bound;
+    std::map<Chord, std::vector<std::string>> bound;
     for (const Shortcut& shortcut : shortcuts())
-        for (const Chord& chord : chords_of(shortcut)) bound[chord].push_back(&shortcut);
+        for (const Chord& chord : chords_of(shortcut)) bound[chord].emplace_back(shortcut.name);
+    for (const Bound& each : bound_)
+        for (const Chord& chord : each.chords) bound[chord].push_back(each.text);
     std::vector<std::string> sentences;
     for (const auto& [chord, wanted] : bound) {
         if (wanted.size() < 2) continue;
         std::string names;
-        for (const Shortcut* shortcut : wanted)
-            names += sentence(names.empty() ? "" : " and for ", '\'', shortcut->name, '\'');
+        for (const std::string& name : wanted) names += sentence(names.empty() ? "" : " and for ", '\'', name, '\'');
         sentences.push_back(in_words(chord) + " stands for " + names + "; change one of them");
     }
     return sentences;

@@ -32,14 +32,25 @@ std::string in_words(const Chord& chord);
 class Keymap {
 public:
     using Changes = KeyChanges;
-    /// Fails if an id is not that of a shortcut, or a text is not a chord.
+    /// Fails if an id is neither that of a shortcut nor an action as text (action_rows.h), or a text is not a chord.
     explicit Keymap(KeySet set = KeySet::modern, const Changes& changes = {});
 
     /// Returns the shortcuts bound to this chord: usually one, more if the user bound a chord twice. A shortcut that
     /// Shift slows down is found for its chord with and without Shift.
     std::vector<const Shortcut*> shortcuts_for(const Chord& chord) const;
+    /// Returns the actions without a shortcut that the user bound to this chord.
+    std::vector<Action> actions_for(const Chord& chord) const;
     /// Returns the chords of a shortcut.
     const std::vector<Chord>& chords_of(const Shortcut& shortcut) const;
+    /// Returns the first chord of an action without a shortcut, as displayed; empty if there is none.
+    std::string text_of_action(const std::string& action) const;
+    /// An action that the user bound to keys.
+    struct Bound {
+        std::string text;  ///< the action as text, which identifies it
+        Action action;
+        std::vector<Chord> chords;
+    };
+    const std::vector<Bound>& bound() const { return bound_; }
     /// Returns the first chord as displayed; empty if there is none.
     std::string text_of(const Shortcut& shortcut) const;
     /// Returns the other shortcuts that share a chord with `shortcut`.
@@ -49,6 +60,7 @@ public:
 
 private:
     std::vector<std::vector<Chord>> chords_;  ///< one list per shortcut, in the order of shortcuts()
+    std::vector<Bound> bound_;
 };
 
 }  // namespace shvr::ui

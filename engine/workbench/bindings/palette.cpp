@@ -7,6 +7,8 @@
 #include "engine/remote/address.h"
 #include "engine/session/session_keys.h"
 #include "engine/session/session_patch.h"
+#include "engine/session/words/number_words.h"
+#include "engine/session/words/setting_labels.h"
 #include "engine/workbench/actions/action_rows.h"
 #include "engine/workbench/bindings/keymap.h"
 #include "engine/workbench/bindings/palette_lists.h"
@@ -32,10 +34,17 @@ const std::vector<SessionKey>& keys_of_settings()
     return KEYS;
 }
 
-/// Returns whether name or meaning of the setting contain all words. Settings in lists ("points.N") never match.
+/// Returns a setting as it is called in the window: "Ambient light".
+std::string title_of(const SessionKey& key)
+{
+    const SettingLabel* const label = label_of_setting(key.name);
+    return label ? capitalised(label->label) : key.name;
+}
+
+/// Returns whether a setting's label, key or meaning has all the words. Words do not find one of many, "points.N".
 bool is_found(const SessionKey& key, std::string_view words)
 {
-    std::string where = key.name + ' ' + key.meaning;
+    std::string where = title_of(key) + ' ' + key.name + ' ' + key.meaning;
     std::ranges::replace_if(
         where, [](char each) { return each == '.' || each == '_'; }, ' ');
     const bool is_one_of_many = key.name.find(".N") != std::string::npos || key.name.find("NAME") != std::string::npos;
@@ -108,7 +117,72 @@ void add_shortcuts(std::vector<PaletteEntry>& entries, const Model& model, std::
                            .group = shortcut.group,
                            .keys = keys,
                            .why_not = is_held ? "goes on while its key is held" : why_not(model, shortcut),
-                           .action = shortcut.action(model, 1.0)});
+                           .action = shortcut.action(model, 1.0),
+                           .bound_as = shortcut.id});
+    }
+}
+
+/// The settings of a session, as JSON.
+class PresentValues {
+public:
+    explicit PresentValues(Session session)
+        : settings_(write_fields({}, [&](Fields& f) { setting_fields(f, session); }), "settings", LIMITS)
+    {}
+    /// Returns the value of a key as JSON; empty: it has none.
+    std::string of(std::string_view key) const
+    {
+        JsonNode node = settings_.root();
+        for (size_t begin = 0; begin <= key.size();) {
+            const size_t end = std::min(key.find('.', begin), key.size());
+            node = node[key.substr(begin, end - begin)];
+            if (!node.exists()) return {};
+            begin = end + 1;
+        }
+        return node.dump();
+    }
+
+private:
+    static constexpr JsonLimits LIMITS{.depth = 16, .expected = "settings, an object"};
+    JsonDocument settings_;
+};
+
+/// Returns the values that a setting may have, if they are few words: "true, false", or names in quotes.
+std::vector<std::string> few_values(const SessionKey& key)
+{
+    if (key.allowed.find("true, false") != std::string::npos) return {"true", "false"};
+    std::vector<std::string> values;
+    for (size_t at = key.allowed.find('"'); at != std::string::npos; at = key.allowed.find('"', at)) {
+        const size_t end = key.allowed.find('"', at + 1);
+        if (end == std::string::npos) break;
+        values.push_back(key.allowed.substr(at, end + 1 - at));
+        at = end + 1;
+    }
+    return values;
+}
+
+/// Adds the other values of settings that have few, and asks for the value of the others.
+void add_settings(std::vector<PaletteEntry>& entries, const Model& model, std::string_view text)
+{
+    constexpr size_t MAX_SETTINGS = 24;
+    std::optional<PresentValues> present;
+    size_t left = MAX_SETTINGS;
+    for (const SessionKey& key : keys_of_settings()) {
+        if (left == 0) return;
+        if (!is_found(key, text)) continue;
+        --left;
+        if (!present) present.emplace(model.session);
+        const std::string now = present->of(key.name), title = title_of(key);
+        const std::string about =
+            "Setting: " + key.name + (now.empty() ? "" : ", now " + value_in_words(key.name, now));
+        for (const std::string& value : few_values(key)) {
+            if (value == now) continue;
+            PaletteEntry entry = typed(model, title + ": " + value_in_words(key.name, value), "",
+                                       [&]() -> Action { return Set{patch_of(sentence(key.name, '=', value))}; });
+            entry.group = about;
+            entries.push_back(std::move(entry));
+        }
+        if (few_values(key).empty() && !key.allowed.empty())
+            entries.push_back({.name = title, .group = about, .completion = key.name + '='});
     }
 }
 
@@ -124,13 +198,14 @@ void add_values(std::vector<PaletteEntry>& entries, const Model& model, std::str
         PaletteEntry entry = typed(model, sentence(key.name, '=', value), "",
                                    [&]() -> Action { return Set{patch_of(sentence(key.name, '=', value))}; });
         if (!entry.why_not.empty()) continue;
-        entry.group = "Setting: " + key.meaning;
+        entry.name = sentence(title_of(key), ": ", value);
+        entry.group = "Setting: " + key.name;
         entries.push_back(std::move(entry));
         if (--left == 0) return;
     }
 }
 
-/// Adds actions whose id begins with the text, and settings that are found by words or whose key begins with it.
+/// Adds actions found by the beginning of their id, and settings found by the beginning of their key.
 void add_completions(std::vector<PaletteEntry>& entries, std::string_view text)
 {
     if (text.empty() || text.find('=') != std::string_view::npos) return;
@@ -145,8 +220,7 @@ void add_completions(std::vector<PaletteEntry>& entries, std::string_view text)
             add(row.id, row.meaning, ' ');
     const bool is_key = text.find('.') != std::string_view::npos;
     for (const SessionKey& key : keys_of_settings())
-        if ((is_key && key.name.starts_with(text)) || is_found(key, text))
-            add(key.name, sentence(key.meaning, "; ", key.allowed), '=');
+        if (is_key && key.name.starts_with(text)) add(key.name, sentence(key.meaning, "; ", key.allowed), '=');
 }
 
 }  // namespace
@@ -170,11 +244,17 @@ std::vector<PaletteEntry> palette_entries(const Model& model, std::string_view t
     if (!text.empty() && !is_done) {
         add_values(entries, model, text);
         add_listed(entries, model, text);
+        if (model.is_open) add_settings(entries, model, text);
     }
     // If there are entries, hides the error that an action lacks its arguments: add_completions() offers to add them.
     if (!entries.empty() && text.find_first_of(" =") == text.npos) as_typed.clear();
     if (!is_done) entries.insert(entries.end(), as_typed.begin(), as_typed.end());
     add_completions(entries, text);
+    for (PaletteEntry& entry : entries) {
+        if (!entry.action || !entry.bound_as.empty()) continue;
+        entry.bound_as = text_of(*entry.action);
+        entry.keys = model.keymap.text_of_action(entry.bound_as);
+    }
     return entries;
 }
 

@@ -20,6 +20,7 @@ struct PaletteEntry {
     std::optional<Action> action{};  ///< action that the entry performs
     std::string completion{};        ///< text to replace the input with; an entry that has a completion has no action
     std::optional<Action> then{};    ///< performed after `action`
+    std::string bound_as{};          ///< what a key is bound to (BindKeys); empty: the entry cannot have a key
 };
 
 /// Returns entries, best match first: a typed action or setting, shortcuts and panels, settings with a typed value,

@@ -285,6 +285,7 @@ Action neighbour_group(const Model& model, double)
 Action step_back(const Model& model, double amount)
 {
     if (model.shows_palette) return ShowPalette{false};
+    if (model.dialog != Dialog::none) return ShowDialog{};
     if (model.shows_preferences) return ShowPreferences{false};
     if (model.shows_help) return ShowHelp{false};
     if (model.shows_messages) return ShowMessages{false};
@@ -299,6 +300,12 @@ Action toggle_shown(const Model& model, double)
     const char* const name = FLAG == &WindowLayout::shows_side ? "shows_side" : "shows_tool_bar";
     const char* const value = model.preferences.layout.*FLAG ? "false" : "true";
     return Prefer{sentence("{\"layout\":{\"", name, "\":", value, "}}")};
+}
+
+template <Dialog DIALOG>
+Action show_dialog(const Model& model, double)
+{
+    return ShowDialog{model.dialog == DIALOG ? Dialog::none : DIALOG};
 }
 
 // ---- The table ------------------------------------------------------------------------------------------------------
@@ -329,6 +336,14 @@ constexpr Shortcut SHORTCUTS[] = {
      [](const Model& model, double) -> Action { return AskOpen{!model.asks_what_to_open}; },
      {"Ctrl+O", "Ctrl+O"}},
     both("save", WORK_KEYS, "Save", Mode::tap, plain<SaveOp>, "Ctrl+S"),
+    both("save_as", WORK_KEYS, "Save as...", Mode::tap, show_dialog<Dialog::save_as>, "Ctrl+Shift+S"),
+    both("open_with_options", WORK_KEYS, "Open with options...", Mode::tap, show_dialog<Dialog::open_with_options>, ""),
+    {"load_annotation", WORK_KEYS, "Load annotation...", Mode::tap, show_dialog<Dialog::load>, {"Ctrl+L", ""}},
+    {"import_scan", WORK_KEYS, "Import as project...", Mode::tap, show_dialog<Dialog::import_scan>, {"Ctrl+I", ""}},
+    {"export_work", WORK_KEYS, "Export...", Mode::tap, show_dialog<Dialog::export_work>, {"Ctrl+E", ""}},
+    both("label_parts", WORK_KEYS, "Label connected parts...", Mode::tap, show_dialog<Dialog::label>, ""),
+    both("compare", WORK_KEYS, "Compare with a reference...", Mode::tap, show_dialog<Dialog::compare>, ""),
+    both("correct_spacing", WORK_KEYS, "Correct the spacing...", Mode::tap, show_dialog<Dialog::spacing>, ""),
     {"screenshot", WORK_KEYS, "Screenshot", Mode::tap, plain<Screenshot>, {"F12", "P"}},
     {"large_screenshot",
      WORK_KEYS,

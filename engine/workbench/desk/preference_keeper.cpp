@@ -21,28 +21,33 @@ void PreferenceKeeper::act(const ChooseKeys& action)
 void PreferenceKeeper::act(const BindKeys& action)
 {
     const Shortcut* const shortcut = shortcut_named(action.shortcut);
-    if (!shortcut) fail("keys: '", action.shortcut, "' is no shortcut; expected one listed in the help window");
     Preferences preferences = preferences_;
     std::vector<std::string>& keys_of_it = preferences.keys[action.shortcut];
     keys_of_it.clear();
     preferences.unusable_keys.erase(action.shortcut);
     for (const std::string_view chord : words_of(action.keys)) keys_of_it.emplace_back(chord);
-    // A binding that equals the default is not stored, so that it changes if the user chooses the other set of keys.
-    if (Keymap(preferences.key_set, preferences.keys).chords_of(*shortcut) ==
-        Keymap(preferences.key_set).chords_of(*shortcut))
-        preferences.keys.erase(action.shortcut);
+    // A binding equal to the default is not stored, so that it follows if the user later chooses the other set of keys.
+    const Keymap changed(preferences.key_set, preferences.keys);  // fails for what is no shortcut and no action
+    const bool is_as_shipped = shortcut
+                                   ? changed.chords_of(*shortcut) == Keymap(preferences.key_set).chords_of(*shortcut)
+                                   : keys_of_it.empty();
+    if (is_as_shipped) preferences.keys.erase(action.shortcut);
     prefer(std::move(preferences));
     awaits_key_.clear();
-    const std::string keys = keymap_.text_of(*shortcut);
-    say(keys.empty() ? sentence("'", shortcut->name, "' has no key") : sentence(keys, ": ", shortcut->name));
+    const std::string keys = shortcut ? keymap_.text_of(*shortcut) : keymap_.text_of_action(action.shortcut);
+    const std::string name = shortcut ? shortcut->name : action.shortcut;
+    say(keys.empty() ? sentence("'", name, "' has no key") : sentence("The key ", keys, " stands for ", name));
     for (const std::string& conflict : keymap_.conflicts()) say(conflict, Weight::warning);
 }
 
 void PreferenceKeeper::act(const AwaitKey& action)
 {
-    if (!action.shortcut.empty() && !shortcut_named(action.shortcut))
-        fail("keys: '", action.shortcut, "' is no shortcut; expected one listed in the help window");
+    const Shortcut* const shortcut = shortcut_named(action.shortcut);
+    if (!action.shortcut.empty() && !shortcut) static_cast<void>(Keymap(KeySet::modern, {{action.shortcut, {}}}));
     awaits_key_ = action.shortcut;
+    if (!action.shortcut.empty())
+        say(sentence("Press the key for '", shortcut ? shortcut->name : action.shortcut,
+                     "'; Escape keeps its key, Delete removes it"));
 }
 
 void PreferenceKeeper::act(const Prefer& action)

@@ -1,6 +1,7 @@
 #include "engine/workbench/desk/window_state.h"
 
 #include "engine/base/assets.h"
+#include "engine/workbench/desk/declined.h"
 
 namespace shvr::ui {
 
@@ -41,6 +42,12 @@ void WindowState::act(const ShowPalette& action)
 void WindowState::act(const ShowPreferences& action)
 {
     shows_preferences_ = action.on;
+}
+
+void WindowState::act(const ShowDialog& action)
+{
+    if (needs_document(action.dialog) && !document_) decline("Nothing is open");
+    dialog_ = action.dialog;
 }
 
 void WindowState::act(const FocusOn& action)
@@ -84,6 +91,7 @@ WindowModel WindowState::model() const
                       .is_full_screen = is_full_screen_,
                       .asks_what_to_open = asks_what_to_open_,
                       .shows_preferences = shows_preferences_,
+                      .dialog = dialog_,
                       .gpu_name = renderer_.device().traits().name};
     if (!document_) return shown;
     shown.device_bytes = renderer_.memory().device_bytes();

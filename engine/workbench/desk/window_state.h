@@ -19,6 +19,7 @@ public:
     void act(const ComparePasses& action);
     void act(const ShowPalette& action);
     void act(const ShowPreferences& action);
+    void act(const ShowDialog& action);
     void act(const FocusOn& action);
     void act(const ShowFullScreen& action);
 
@@ -33,6 +34,7 @@ private:
     PreferenceKeeper& keeper_;
     bool shows_help_ = false, shows_passes_ = false, shows_palette_ = false, is_full_screen_ = false;
     bool asks_what_to_open_ = false, shows_preferences_ = false;
+    Dialog dialog_ = Dialog::none;
     std::string focus_;
     std::filesystem::path page_;
     std::optional<PassRun> compared_passes_;

@@ -13,6 +13,7 @@
 #include "engine/session/kept_settings.h"
 #include "engine/session/label_looks.h"
 #include "engine/session/lasting_settings.h"
+#include "engine/session/words/setting_words.h"
 #include "engine/workbench/touch/felt_relevance.h"
 
 namespace shvr::ui {

@@ -45,8 +45,11 @@ struct LoadPreview {
     std::optional<Part> part{};  ///< null: a transfer function
     std::string changes;         ///< a sentence: "1200 voxels would change their group"
     bool changes_anything = true;
-    std::vector<MaskPreview::Group> groups{};  ///< if the file is a mask: the groups that gain or lose voxels
-    std::vector<std::string> notes{};          ///< how the file was read, and which parts of it were ignored
+    bool is_being_read = false;  ///< what follows is not known yet
+    std::string failure{};       ///< why the file cannot be loaded; empty: it can
+    bool is_unclear = false;     ///< it fails because its contents do not say what it is: it can if that is stated
+    std::vector<MaskPreview::Group> groups{};  ///< those that gain or lose voxels, if it is a mask
+    std::vector<std::string> notes{};          ///< how the file was read, and what of it is left out
 };
 
 /// Made by the opener.

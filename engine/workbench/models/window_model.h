@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/session/transfer_presets.h"
+#include "engine/workbench/models/dialogs.h"
 
 namespace shvr::ui {
 
@@ -33,6 +34,7 @@ struct WindowModel {
     bool shows_help = false, shows_messages = false, shows_passes = false, shows_palette = false,
          is_full_screen = false;
     bool asks_what_to_open = false, shows_preferences = false;
+    Dialog dialog = Dialog::none;  ///< the dialog that is asked for
     std::string_view gpu_name{};
     uint64_t device_bytes = 0, device_budget = 0;
     std::map<std::string, uint64_t> bytes_by_name{};  ///< device memory by name; empty unless the passes are shown

@@ -130,7 +130,7 @@ void FileTaker::act(const LookAtFile& action)
 void FileTaker::act(const TakeFile& action)
 {
     unclear_.reset();
-    const Step step = action.previews ? Step::preview : Step::load;
+    const Step step = action.previews ? Step::preview_in_turn : Step::load;
     std::vector<std::filesystem::path> others;
     for (const std::string& line : lines_of(action.beside)) others.emplace_back(line);
     if (action.use == FileUse::scan) return others_.begin_open(action.path, {}, others, false);
@@ -206,7 +206,7 @@ void FileTaker::take_together(std::vector<std::filesystem::path> paths, Step ste
             }
             if (opened.size() == 1) return others_.begin_open(opened[0], {}, others, asks_of_labels);
             for (const std::filesystem::path& path : others)
-                act(TakeFile{.path = path, .previews = step == Step::preview});
+                act(TakeFile{.path = path, .previews = step != Step::load});
         });
     });
 }
@@ -241,7 +241,7 @@ struct FileTaker::ReadFile {
 
 bool FileTaker::has_preview() const
 {
-    return preview_ && previewed_->opening == desk_.openings;
+    return preview_ && preview_opening_ == desk_.openings;
 }
 
 /// Never opens a document in place of the open scan, whatever the file contains: the user asked to add annotation.
@@ -271,20 +271,56 @@ void FileTaker::act(const PreviewLoad& action)
     preview_.reset();
     previewed_.reset();
     if (action.path.empty()) return show_next_preview();
+    preview_ = LoadPreview{.path = action.path, .is_being_read = true};
+    preview_opening_ = desk_.openings;
     if (action.what != FileUse::by_contents) return take_as(action.what, action.path, Step::preview);
     load_by_contents(action.path, Step::preview);
 }
 
 void FileTaker::load_by_contents(const std::filesystem::path& path, Step step)
 {
-    jobs_.start("looking at " + short_name(path), [this, path, step, volume = document_->volume()](ProgressReporter&) {
+    const auto look = [this, path, step, volume = document_->volume()](ProgressReporter&) {
         const WhatItIs found = what_annotation_is(path, volume);
         return Jobs::Completion([this, path, step, found] {
+            const bool is_previewed = step == Step::preview && !options_.is_script;
+            if (found.may_be_annotation && is_previewed)
+                return refuse_preview(
+                    path, sentence(path.string(), ": could be a mask or density offsets; choose which"), true);
             if (found.may_be_annotation) return ask_what_it_is({.path = path, .may_be_scan = false});
+            if (!found.content && is_previewed) return refuse_preview(path, found.why_not);
             if (!found.content) fail(found.why_not);
             take_as(use_of(*found.content), path, step);
         });
+    };
+    start_reading("looking at " + short_name(path), path, step, look);
+}
+
+/// Starts a job that reads a file. If that fails, the preview of a dialog states why; otherwise the job fails.
+void FileTaker::start_reading(const std::string& what, const std::filesystem::path& path, Step step,
+                              Jobs::Function read)
+{
+    if (step != Step::preview || options_.is_script) {
+        jobs_.start(what, std::move(read));
+        return;
+    }
+    jobs_.start(what, [this, path, read = std::move(read)](ProgressReporter& reporter) -> Jobs::Completion {
+        try {
+            return read(reporter);
+        } catch (const Stopped&) {
+            throw;
+        } catch (const std::exception& error) {
+            return [this, path, why = told_of(error)] { refuse_preview(path, why); };
+        }
     });
+}
+
+/// Says in the preview why there is none, unless another one was asked for meanwhile.
+void FileTaker::refuse_preview(const std::filesystem::path& path, const std::string& why, bool is_unclear)
+{
+    if (!has_preview() || preview_->path != path || !preview_->is_being_read) return;
+    preview_->is_being_read = preview_->changes_anything = false;
+    preview_->failure = why;
+    preview_->is_unclear = is_unclear;
 }
 
 void FileTaker::take_as(FileUse use, const std::filesystem::path& path, Step step)
@@ -299,11 +335,12 @@ void FileTaker::take_as(FileUse use, const std::filesystem::path& path, Step ste
 
 void FileTaker::read_transfer_function(const std::filesystem::path& path, Step step)
 {
-    jobs_.start("reading " + short_name(path), [this, path, step, opening = desk_.openings](ProgressReporter&) {
+    const auto reading = [this, path, step, opening = desk_.openings](ProgressReporter&) {
         const auto read = std::make_shared<ReadFile>(
             ReadFile{.path = path, .opening = opening, .text = read_text(path, MAX_JSON_BYTES)});
         return Jobs::Completion([this, read, step] { go_on_with(read, step); });
-    });
+    };
+    start_reading("reading " + short_name(path), path, step, reading);
 }
 
 void FileTaker::read_annotation(Part part, const std::filesystem::path& path, Step step)
@@ -315,7 +352,7 @@ void FileTaker::read_annotation(Part part, const std::filesystem::path& path, St
     (part == Part::mask ? files.mask : part == Part::trace ? files.trace : files.density) = path;
     const auto read = std::make_shared<ReadFile>(
         ReadFile{.path = path, .opening = desk_.openings, .part = part, .groups = document_->session.groups});
-    jobs_.start("reading " + short_name(path), [this, volume, files, read, step](ProgressReporter&) {
+    const auto reading = [this, volume, files, read, step](ProgressReporter&) {
         const auto found = std::make_shared<shvr::Document>(
             shvr::Document{.mask = Mask(volume.size), .trace = {}, .density = DensityField(volume.size, volume.type)});
         read->notes = shvr::load(*read->part, files, *found);
@@ -323,15 +360,22 @@ void FileTaker::read_annotation(Part part, const std::filesystem::path& path, St
         read->looks = read->groups;
         if (*read->part == Part::mask) static_cast<void>(take_label_looks(read->path, read->looks));
         return Jobs::Completion([this, read, step] { go_on_with(read, step); });
-    });
+    };
+    start_reading("reading " + short_name(path), path, step, reading);
 }
 
 void FileTaker::go_on_with(std::shared_ptr<const ReadFile> read, Step step)
 {
     if (!document_ || desk_.openings != read->opening)
         fail(read->path.string(), ": belongs to a volume that is no longer open");
-    if (step == Step::preview) return show_preview(std::move(read));
-    load(*read);
+    if (step == Step::load) return load(*read);
+    if (step == Step::preview) {
+        const bool is_wanted = has_preview() && preview_->path == read->path && preview_->is_being_read;
+        if (is_wanted) show_preview(std::move(read));
+        return;
+    }
+    to_preview_.push_back(std::move(read));
+    show_next_preview();
 }
 
 /// Returns the changes of annotation that loading the file makes, without names and colours of groups.
@@ -340,10 +384,8 @@ std::vector<Change> FileTaker::changes_by(const ReadFile& read) const
     return changes_between(*read.part, document_->annotator.document(), *read.found);
 }
 
-/// Shows the files of a drop one after the other: what one changes depends on whether those before it were loaded.
 void FileTaker::show_preview(std::shared_ptr<const ReadFile> read)
 {
-    if (has_preview()) return to_preview_.push_back(std::move(read));
     LoadPreview preview{.path = read->path, .part = read->part};
     if (read->part) {
         const std::vector<Change> changes = changes_by(*read);
@@ -357,9 +399,11 @@ void FileTaker::show_preview(std::shared_ptr<const ReadFile> read)
         preview.changes = "The transfer function would be replaced.";
     }
     preview_ = std::move(preview);
+    preview_opening_ = read->opening;
     previewed_ = std::move(read);
 }
 
+/// Shows the files of a drop one after the other: what one changes depends on whether those before it were loaded.
 void FileTaker::show_next_preview()
 {
     while (!to_preview_.empty() && !has_preview()) {
@@ -380,7 +424,7 @@ void FileTaker::load_transfer_function(const ReadFile& read)
         others_.set(Set{patch_of("transfer_function=" + read.text)});
     }
     others_.record_settings();
-    say("The transfer function of " + read.path.string() + " is taken; undo takes it back");
+    say("Loaded the transfer function of " + read.path.string() + "; undo takes it back");
 }
 
 /// Adds the data that was read as one history step. For a mask, the step includes names and colours of groups that the
@@ -402,13 +446,14 @@ void FileTaker::load(const ReadFile& read)
         changes.emplace_back(SettingChange{"groups", known == before.end() ? std::string() : known->second,
                                            lasting_settings(after).at("groups")});
     }
-    const Command* const command = annotator.perform(sentence(name, " of ", short_name(path)), std::move(changes));
-    if (!command) return say(path + ": its " + name + " is already in use");
+    const Command* const command =
+        annotator.perform(sentence("loaded the ", name, " of ", short_name(path)), std::move(changes));
+    if (!command) return say(sentence("The scan already has the ", name, " of ", path));
     if (*read.part == Part::mask) annotator.work().keep_header_of(read.path);
     others_.show_changes(*command);
     for (const std::string& loss : read.notes.losses) say(loss, Weight::warning);
     for (const std::string& remark : read.notes.remarks) say(remark);
-    say(sentence("The ", name, " of ", path, " is taken; undo takes it back"));
+    say(sentence("Loaded the ", name, " of ", path, "; undo takes it back"));
 }
 
 }  // namespace shvr::ui

@@ -40,7 +40,11 @@ public:
     }
 
 private:
-    enum class Step { preview, load };
+    enum class Step {
+        preview,          ///< for the dialog that asked for it
+        preview_in_turn,  ///< when the files dropped before it are loaded or left
+        load
+    };
     struct ReadFile;
     /// A preview ends with the document that it was made for.
     bool has_preview() const;
@@ -54,6 +58,8 @@ private:
     std::vector<Change> changes_by(const ReadFile& read) const;
     void show_preview(std::shared_ptr<const ReadFile> read);
     void show_next_preview();
+    void refuse_preview(const std::filesystem::path& path, const std::string& why, bool is_unclear = false);
+    void start_reading(const std::string& what, const std::filesystem::path& path, Step step, Jobs::Function read);
     void load(const ReadFile& read);
     void load_transfer_function(const ReadFile& read);
 
@@ -61,7 +67,8 @@ private:
     std::unique_ptr<Candidate> candidate_;
     std::optional<UnclearFile> unclear_;
     std::optional<LoadPreview> preview_;
-    std::shared_ptr<const ReadFile> previewed_;               ///< what `preview_` describes
+    uint64_t preview_opening_ = 0;                            ///< Desk::openings when `preview_` was asked for
+    std::shared_ptr<const ReadFile> previewed_;               ///< what `preview_` describes, once it is read
     std::deque<std::shared_ptr<const ReadFile>> to_preview_;  ///< dropped together with that, shown after it
 };
 

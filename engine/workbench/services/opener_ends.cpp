@@ -70,7 +70,7 @@ void Opener::cancel()
     if (!opening_) return;
     if (opening_->comes_back) return;  // there is nothing else to be shown
     jobs_.cancel(opening_->number);
-    say("Cancelled: opening " + short_name(opening_->path), Weight::warning);
+    say("Cancelled: opening " + short_name(opening_->path));
     const std::shared_ptr<Opening> ended = std::exchange(opening_, nullptr);
     ended->scene.reset();
     if (away_) bring_back();

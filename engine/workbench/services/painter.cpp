@@ -166,16 +166,15 @@ bool Painter::tries_stroke(std::string& unpainted)
 void Painter::stroke_ended()
 {
     const StrokeResult& result = document_->annotator.last_stroke();
-    const bool is_as_meant = result.taken_from.empty() && result.kept_by_locks() == 0;
+    const bool takes_from_others = !result.taken_from.empty() && !result.stroke.erases();
+    const bool is_as_meant = !takes_from_others && result.kept_by_locks() == 0;
     std::string said =
         sentence_of(result, [&](uint8_t group) { return group_of(document_->session.groups, group).name; });
-    const bool found_nothing =
-        is_as_meant && result.voxels() == 0 && result.kept_painted == 0 && !result.stroke.erases();
     if (is_as_meant && !result.stroke.erases() && is_hardly_any(result, document_->volume().spacing))
         said += how_to_reach_this();
     others_.note_stroke(result.voxels() == 0);
     if (result.voxels() != 0) document_->painted_at = document_->touch.probe();
-    say(said, is_as_meant && !found_nothing ? Weight::done : Weight::warning);
+    say(said, is_as_meant ? Weight::done : Weight::warning);
 }
 
 /// If the voxel under the probe is below the paint threshold, returns its value and the key that sets the threshold.

@@ -49,7 +49,7 @@ bool Photographer::cancel(Jobs::Number number)
 {
     if (number != NUMBER_OF_LARGE || !has_large()) return false;
     screenshots_.drop_large();
-    say("Cancelled: the large screenshot", Weight::warning);
+    say("Cancelled: the large screenshot");
     return true;
 }
 

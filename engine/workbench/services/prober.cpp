@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/session/words/number_words.h"
 #include "engine/workbench/sight/words.h"
 
 namespace shvr::ui {
@@ -105,7 +106,11 @@ void Prober::act(const ScaleProbe& action)
     double& radius = document_->session.probe.brush.radius_voxels;
     radius = std::clamp(radius * action.factor, MIN_RADIUS_VOXELS, MAX_RADIUS_VOXELS);
     others_.note_edit();
-    say(sentence("Probe radius ", std::round(10.0 * radius) / 10.0, " voxels"));
+    const VolumeInfo& volume = document_->volume();
+    const double shown = std::round(10.0 * radius) / 10.0;
+    say(sentence(
+        "Probe radius ", number_in_words(shown), shown == 1.0 ? " voxel" : " voxels",
+        volume.unit == "voxel" ? "" : sentence(" (", length_in_words(radius * volume.spacing.x, volume.unit), ")")));
 }
 
 ProbeModel Prober::model() const

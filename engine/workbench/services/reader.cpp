@@ -4,6 +4,7 @@
 
 #include "engine/live/densities.h"
 #include "engine/remote/address.h"
+#include "engine/workbench/desk/declined.h"
 #include "engine/workbench/sight/words.h"
 
 namespace shvr::ui {
@@ -108,7 +109,7 @@ void Reader::act(const MeasureAt& action)
 {
     Document& document = *document_;
     const std::optional<glm::dvec3> point = others_.seen_at(others_.pane(action.pane), action.pixel);
-    if (!point) fail("nothing is seen there; expected a visible point to measure from");
+    if (!point) decline("Nothing is seen there, so nothing is measured; click something visible");
     const glm::dvec3 voxel = *point / document.volume().spacing;
     if (!document.measuring_from) {
         document.measuring_from = voxel;
@@ -132,7 +133,7 @@ void Reader::act(const ClearMeasurements&)
     Session after = document_->session;
     const bool is_one_begun = std::exchange(document_->measuring_from, {}).has_value();
     if (after.measurements.empty()) {
-        if (is_one_begun) say("Its first end is forgotten");
+        if (is_one_begun) say("The begun distance is dropped");
         return;
     }
     after.measurements.clear();

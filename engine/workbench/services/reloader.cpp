@@ -84,7 +84,7 @@ bool Reloader::cancel()
 bool Reloader::cancel(Jobs::Number number)
 {
     if (number != NUMBER_OF_RELOAD || !cancel()) return false;
-    say("Cancelled: reloading", Weight::warning);
+    say("Cancelled: reloading");
     return true;
 }
 

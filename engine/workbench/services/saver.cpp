@@ -121,7 +121,7 @@ void Saver::start_copy(const std::filesystem::path& path, bool opens_it)
 
 void Saver::end(const Jobs::Finished& job)
 {
-    if (copies_.erase(job.number) > 0 && job.was_cancelled) say("Cancelled: " + job.what, Weight::warning);
+    if (copies_.erase(job.number) > 0 && job.was_cancelled) say("Cancelled: " + job.what);
     end_save(job);
 }
 

@@ -3,7 +3,10 @@
 #include <algorithm>
 
 #include "engine/session/session_patch.h"
+#include "engine/session/words/number_words.h"
+#include "engine/session/words/setting_words.h"
 #include "engine/workbench/actions/action_rows.h"
+#include "engine/workbench/desk/declined.h"
 #include "engine/workbench/edits/edit.h"
 #include "engine/workbench/edits/group_steps.h"
 #include "engine/workbench/words/settings_words.h"
@@ -54,7 +57,7 @@ void SettingsEditor::act(const Set& action)
     if (is_hand_down_ && !session_before_hand_) session_before_hand_ = before;
     const Session& since = session_before_hand_ ? *session_before_hand_ : before;
     std::string said = special_sentence(since, document_->session);
-    if (said.empty()) said = difference_in_words(since, document_->session);
+    if (said.empty()) said = capitalised(difference_in_words(since, document_->session));
     if (!said.empty()) say(std::move(said));
     for (std::string& removed : removed_keys_in(session_document(action.patch, "settings"), "settings"))
         say(std::move(removed), Weight::warning);
@@ -82,7 +85,7 @@ void SettingsEditor::act(const AutoContrast&)
     after.view.slices.black = contrast.lower;
     after.view.slices.white = contrast.upper;
     take_session(std::move(after));
-    say(sentence("Slices: black at ", contrast.lower, ", white at ", contrast.upper));
+    say(sentence("Slices: black at ", number_in_words(contrast.lower), ", white at ", number_in_words(contrast.upper)));
 }
 
 void SettingsEditor::act(const TakePreset& action)
@@ -196,7 +199,7 @@ void SettingsEditor::step(int count, const char* done, const char* nothing, Way 
         show_changes(*command);
         last = command->label;
     }
-    if (steps == 0 && document_->annotator.stroke_is_running()) fail("A stroke is being painted");
+    if (steps == 0 && document_->annotator.stroke_is_running()) decline("A stroke is being painted");
     if (steps == 0) return say(nothing);
     say(steps == 1 ? sentence(done, ": ", last) : sentence(done, ": ", steps, " steps, the last: ", last));
 }

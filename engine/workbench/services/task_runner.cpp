@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/remote/address.h"
+#include "engine/workbench/words/task_words.h"
 
 namespace shvr::ui {
 
@@ -13,19 +14,6 @@ std::string joined(const std::vector<std::string>& texts, const char* between)
     std::string text;
     for (const std::string& each : texts) text += (text.empty() ? "" : between) + each;
     return text;
-}
-
-std::string sentence_about(const EvaluateResult& result)
-{
-    std::string text;
-    const auto add = [&](const auto&... parts) { text += sentence(text.empty() ? "" : ", ", parts...); };
-    if (result.dice && result.dice->painted) add("Dice ", *result.dice->painted);
-    if (result.nodes && result.nodes->mean) add("nodes ", *result.nodes->mean, " inside the mask");
-    if (result.internodes && result.internodes->mean) add("internodes ", *result.internodes->mean);
-    if (result.traces)
-        add(result.traces->segments_found, " of ", result.traces->segments_total, " segments found, ",
-            result.traces->topological_errors(), " topological errors");
-    return text.empty() ? "There was nothing to compare" : "Compared with the reference: " + text;
 }
 
 }  // namespace
@@ -43,7 +31,7 @@ void TaskRunner::advance()
         if (writer != writers_.end()) writers_.erase(writer);
         if (others_.end_reading(job)) continue;
         if (job.was_cancelled)
-            say("Cancelled: " + job.what + kept, Weight::warning);
+            say("Cancelled: " + job.what + kept, kept.empty() ? Weight::done : Weight::warning);
         else if (!job.failure.empty())
             say(job.failure, Weight::error);
     }
@@ -111,8 +99,9 @@ void TaskRunner::act(const ExportTask& task)
     start_writing("exporting " + joined(names, ", "),
                   [this, task, snapshot](ProgressReporter& reporter) -> Jobs::Completion {
                       ExportResult result = run(task, snapshot->view(), reporter);
-                      return [this, result = std::move(result)] {
-                          say("Exported " + joined(result.written, ", ") +
+                      const double bytes = bytes_of_files(result.written);
+                      return [this, bytes, result = std::move(result)] {
+                          say(exported_in_words(result.written, bytes) +
                                   (result.left_out.empty() ? "" : "; " + joined(result.left_out, "; ")),
                               result.left_out.empty() ? Weight::done : Weight::warning);
                       };
@@ -146,11 +135,8 @@ void TaskRunner::act(const LabelTask& task)
         check(task, *source, path);
         const LabelResult result = run(task, *source, name, reporter);
         return [this, result, task] {
-            const Components::Counts& counts = result.counts;
             for (const std::string& warning : result.warnings) say(warning, Weight::warning);
-            say(sentence(counts.found, " connected parts at or above ", task.threshold, ", the largest of ",
-                         counts.largest_voxels, " voxels",
-                         task.output.empty() ? "" : "; labels are in " + task.output.string()));
+            say(labelled_in_words(result.counts, task));
         };
     };
     start_writing("labelling " + name, label);
@@ -165,7 +151,7 @@ void TaskRunner::act(const EvaluateTask& asked)
         const EvaluateResult result = run(task, reporter);
         return [this, result] {
             for (const std::string& warning : result.warnings) say(warning, Weight::warning);
-            say(sentence_about(result));
+            say(compared_in_words(result));
         };
     });
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/session/words/number_words.h"
+#include "engine/workbench/desk/declined.h"
 #include "engine/workbench/edits/edit.h"
 #include "engine/workbench/edits/trace_ops.h"
 #include "engine/workbench/words/trace_words.h"
@@ -61,13 +63,13 @@ void Tracer::trace(const TraceOp& asked)
 {
     const TraceOp op = options_.is_script ? asked : with_radius(asked);
     Annotator& annotator = document_->annotator;
-    if (annotator.stroke_is_running()) fail("The trace cannot be edited while a stroke is being painted");
+    if (annotator.stroke_is_running()) decline("The trace cannot be edited while a stroke is being painted");
     const TraceGraph& trace = annotator.document().trace;
     if (const NodeOp* node = std::get_if<NodeOp>(&op);
         node && node->group.value_or(node->divides ? uint8_t(1) : document_->brush().group) == 0)
-        fail("Group 0 is the eraser; choose a group from 1 up for the node");
+        decline("Group 0 is the eraser; choose a group from 1 up for the node");
     if (const GroupOp* group = std::get_if<GroupOp>(&op); group && group->group == 0)
-        fail("Group 0 is the eraser, and traces belong to a group from 1 up");
+        decline("Group 0 is the eraser, and traces belong to a group from 1 up");
     others_.record_settings();
     const TraceSize before{trace.nodes().size(), trace.internodes().size()};
     const auto cut = std::holds_alternative<DeleteOp>(op) ? ends_of_cut(trace) : std::nullopt;
@@ -159,7 +161,7 @@ void Tracer::act(const NodeAt& action)
         return;
     }
     const std::optional<glm::dvec3> point = others_.seen_at(seen, action.pixel);
-    if (!point) fail("nothing is seen there; expected a visible point for the node");
+    if (!point) decline("Nothing is seen there, so no node is added; click something visible");
     glm::dvec3 voxel = *point / document_->volume().spacing;
     const bool goes_inside = document_->session.probe.centered_nodes && !seen.shot.is_slice;
     const std::optional<LocalBall> ball =
@@ -177,7 +179,7 @@ void Tracer::act(const NodeAt& action)
     if (goes_inside && !ball)
         say(desk_.messages.last() +
                 "; it stays on the surface, for nothing there has a middle above the paint threshold " +
-                sentence(*document_->brush().threshold,
+                sentence(number_in_words(*document_->brush().threshold),
                          keeper_.with_key("; ", "threshold_here", " sets the threshold from here")),
             Weight::warning);
     if (ball && ball->is_held)
@@ -190,7 +192,7 @@ void Tracer::act(const NodeAt& action)
 void Tracer::act(const SelectAt& action)
 {
     Document& document = *document_;
-    if (document.annotator.stroke_is_running()) fail("Nothing can be selected while a stroke is being painted");
+    if (document.annotator.stroke_is_running()) decline("Nothing can be selected while a stroke is being painted");
     const Pane seen = others_.pane(action.pane);
     const TraceGraph& trace = document.annotator.document().trace;
     const TraceHit hit =
@@ -220,7 +222,7 @@ void Tracer::select_segment()
     try {
         trace(SelectSegmentOp{});
     } catch (const Error& error) {
-        say(error.what(), Weight::warning);
+        say(error.what());
     }
 }
 

@@ -4,9 +4,12 @@
 #include <cmath>
 
 #include "engine/look/camera_motion.h"
+#include "engine/session/words/number_words.h"
 #include "engine/workbench/actions/action_rows.h"
+#include "engine/workbench/desk/declined.h"
 #include "engine/workbench/edits/edit.h"
 #include "engine/workbench/edits/trace_ops.h"
+#include "engine/workbench/sight/words.h"
 
 namespace shvr::ui {
 
@@ -55,12 +58,12 @@ glm::dvec3 Viewer::pivot() const
 void Viewer::act(const PivotAt& action)
 {
     const std::optional<glm::dvec3> point = seen_at(pane(action.pane), action.pixel);
-    if (!point) fail("nothing is seen there; expected a visible point as the pivot");
+    if (!point) decline("Nothing is seen there, so the pivot stays where it was");
     document_->picked_pivot = point;
     Session after = document_->session;
     after.interaction.pivot = Pivot::picked;
     others_.take_session(std::move(after));
-    say("The pivot is at the small cross");
+    say("The view now turns about the small cross");
 }
 
 void Viewer::act(const Orbit& action)
@@ -226,20 +229,21 @@ void Viewer::act(const GoTo& action)
     camera.eye += way;
     camera.target += way;
     look_from(camera);
-    say(sentence("Looking at voxel ", std::floor(action.voxel.x), ", ", std::floor(action.voxel.y), ", ",
-                 std::floor(action.voxel.z)));
+    say("Looking at " + place_in_words(action.voxel, document_->volume()));
 }
 
 void Viewer::act(const PlaceClips& action)
 {
     if (action.far > 0.0 && action.near >= action.far)
-        fail("the near clip plane is ", action.near, " from the eye; expected less than the far one's ", action.far);
+        fail("the near clip plane is ", number_in_words(action.near),
+             " from the eye; expected less than the far one's ", number_in_words(action.far));
     Camera camera = document_->camera;
     camera.near_distance = action.near;
     camera.far_distance = action.far;
     look_from(camera);
-    const std::string unit = " " + document_->volume().unit;
-    const auto named = [&](double distance) { return distance > 0.0 ? sentence(distance, unit) : "none"; };
+    const auto named = [&](double distance) {
+        return distance > 0.0 ? length_in_words(distance, document_->volume().unit) : std::string("none");
+    };
     say(sentence("Clip planes, from the eye: near ", named(action.near), ", far ", named(action.far)));
 }
 
@@ -254,8 +258,11 @@ void Viewer::act(const MoveCut& action)
     const double high = action.upper ? size[action.axis] : cut.upper[action.axis];
     plane = std::clamp(plane + action.share * size[action.axis], low, high);
     others_.take_session(std::move(after));
-    say(sentence(action.upper ? "Far" : "Near", " cutting plane of ", "xyz"[action.axis], " at voxel ",
-                 std::lround(plane)));
+    const VolumeInfo& volume = document_->volume();
+    say(sentence(action.upper ? "Far " : "Near ", "xyz"[action.axis], " cutting plane at voxel ", std::lround(plane),
+                 volume.unit == "voxel"
+                     ? ""
+                     : sentence(" (", length_in_words(plane * volume.spacing[action.axis], volume.unit), ")")));
 }
 
 void Viewer::act(const MoveClip& action)
@@ -271,7 +278,7 @@ void Viewer::act(const MoveClip& action)
     }
     look_again();
     say(sentence(action.far ? "Far" : "Near", " clip plane at ",
-                 action.far ? camera.far_distance : camera.near_distance, " ", document_->volume().unit,
+                 length_in_words(action.far ? camera.far_distance : camera.near_distance, document_->volume().unit),
                  " from the eye"));
 }
 

@@ -6,25 +6,11 @@
 
 #include "engine/base/text.h"
 #include "engine/look/camera_motion.h"
+#include "engine/session/words/number_words.h"
 
 namespace shvr::ui {
 
 namespace {
-
-std::string digits(double value)
-{
-    char text[32];
-    std::snprintf(text, sizeof text, "%.4g", value == 0.0 ? 0.0 : value);
-    return text;
-}
-
-/// Formats an integer with all its digits, and any other value with four digits.
-std::string intensity_in_words(double value)
-{
-    constexpr double MAX_EXACT = 9007199254740992.0;  // 2^53
-    if (value != std::floor(value) || std::abs(value) > MAX_EXACT) return digits(value);
-    return std::to_string(int64_t(value));
-}
 
 std::string spelled(const std::string& unit)
 {
@@ -33,7 +19,7 @@ std::string spelled(const std::string& unit)
 
 std::string three(const glm::dvec3& values)
 {
-    return digits(values.x) + ", " + digits(values.y) + ", " + digits(values.z);
+    return number_in_words(values.x) + ", " + number_in_words(values.y) + ", " + number_in_words(values.z);
 }
 
 /// Units of length, each a thousand times as long as the previous one.
@@ -49,14 +35,14 @@ std::string readable(double length, std::string unit)
         unit = *at;
     }
     if (unit == "voxel" && length != 1.0) unit = "voxels";
-    return digits(length) + " " + spelled(unit);
+    return number_in_words(length) + " " + spelled(unit);
 }
 
 }  // namespace
 
 std::string length_in_words(double length, const std::string& unit)
 {
-    const std::string text = digits(length);
+    const std::string text = number_in_words(length);
     return text + " " + (unit == "voxel" && text != "1" ? "voxels" : spelled(unit));
 }
 
@@ -77,9 +63,9 @@ std::string place_in_words(const glm::dvec3& voxel, const VolumeInfo& volume)
 std::string value_in_words(const Reading& reading)
 {
     if (!reading.is_inside) return "outside";
-    std::string text = reading.intensity ? "value " + intensity_in_words(*reading.intensity) : std::string("value ...");
+    std::string text = reading.intensity ? "value " + number_in_words(*reading.intensity) : std::string("value ...");
     if (reading.offset != 0.0)
-        text += std::string(reading.offset > 0.0 ? " + " : " - ") + intensity_in_words(std::abs(reading.offset));
+        text += std::string(reading.offset > 0.0 ? " + " : " - ") + number_in_words(std::abs(reading.offset));
     return text;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/session/quality.h"
+#include "engine/session/words/number_words.h"
 #include "engine/workbench/bindings/tools.h"
 #include "engine/workbench/words/touch_words.h"
 
@@ -64,8 +65,9 @@ std::optional<double> shift_between(const TransferFunction& was, const TransferF
 std::string sentence_about(const TransferFunction& was, const TransferFunction& is)
 {
     const std::optional<double> shift = shift_between(was, is);
-    if (shift) return sentence("Transfer function shifted by ", *shift);
-    return sentence("Transfer function of ", is.points().size(), " points, from ", is.lower(), " to ", is.upper());
+    if (shift) return "Transfer function shifted by " + number_in_words(*shift);
+    return sentence("Transfer function of ", is.points().size(), " points, from ", number_in_words(is.lower()), " to ",
+                    number_in_words(is.upper()));
 }
 
 /// Describes a change of the curve from arriving ambient light to displayed light.

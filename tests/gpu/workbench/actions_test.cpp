@@ -197,6 +197,7 @@ const Row ROWS[] = {
     {R"({"op":"show_manual"})", ""},
     {R"({"op":"show_messages","on":true})", "messages"},
     {R"({"op":"show_passes","on":true})", "passes"},
+    {R"({"op":"show_dialog","dialog":"export"})", "dialog"},
     {R"({"op":"save_passes","path":"FOLDER/saved.json"})", "file saved.json"},
     {R"({"op":"compare_passes","path":"FOLDER/run.json"})", "passes"},
     {R"({"op":"compare_passes"})", "passes", {COMPARE}},

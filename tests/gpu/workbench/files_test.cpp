@@ -88,14 +88,14 @@ TEST_CASE_FIXTURE(OnDevice, "what is dropped is taken by its contents, whatever 
     drop("scan.nrrd");
     CHECK(desk.bench.model().volume.size == Size3(24, 20, 16));
     drop("look");
-    CHECK(desk.said("is taken; undo takes it back"));
+    CHECK(desk.said("undo takes it back"));
     CHECK(desk.bench.model().undoable == 1);
     // A kept transfer function: its positions are shares of the range of tissue, for use in any volume.
     desk.folder.write("kept.json", R"({"note":"Kept.","points":[{"at":0,"color":"#200000","opacity":0},)"
                                    R"({"at":1,"color":"#ffffe0","opacity":0.8}],"extends":false})");
     const TransferFunction before = desk.bench.model().session.transfer_function;
     drop("kept.json");
-    CHECK(desk.said("kept.json is taken; undo takes it back"));
+    CHECK(desk.said("kept.json; undo takes it back"));
     CHECK(desk.bench.model().session.transfer_function ==
           transfer_function_of(read_transfer_preset(desk.path("kept.json")), desk.bench.model().statistics));
     desk.bench.perform(UndoOp{1});
@@ -108,7 +108,7 @@ TEST_CASE_FIXTURE(OnDevice, "what is dropped is taken by its contents, whatever 
     drop("paint.anything");
     CHECK(desk.bench.model().voxels_by_group[3] == 24 * 20 * 16);
     drop("paint.anything");
-    CHECK(desk.said("its mask is already in use"));
+    CHECK(desk.said("The scan already has the mask of"));
     desk.folder.write("line.txt", "-v 10, 12, 14, 1, 2\n");
     drop("line.txt");
     CHECK(desk.bench.model().trace.nodes().size() == 1);

@@ -67,7 +67,7 @@ TEST_CASE_FIXTURE(OnDevice, "a mask is not taken for a scan: it is loaded, refus
             CHECK(desk.bench.model().voxels_by_group[3] == 0);
         }
         take("offsets.nrrd");
-        CHECK(desk.said("its density offsets is already in use"));
+        CHECK(desk.said("The scan already has the density offsets of"));
         // A TIFF of another program states nothing: by intent it is a mask, dropped it may be another scan.
         take("foreign.tif");
         if (is_dropped) {
@@ -207,12 +207,27 @@ TEST_CASE_FIXTURE(OnDevice, "a preview states what loading would change, loads n
     REQUIRE(desk.bench.model().load_preview);
     CHECK(desk.bench.model().load_preview->changes == "The transfer function would be replaced.");
     perform(LoadAnnotation{desk.path("look.json"), FileUse::look});
-    CHECK(desk.said("look.json is taken; undo takes it back"));
+    CHECK(desk.said("look.json; undo takes it back"));
     CHECK(desk.bench.model().undoable == steps + 1);
     desk.folder.write("small.mask", std::string(12 * 20 * 16, '\1'));
-    perform(PreviewLoad{desk.path("small.mask")});
-    CHECK(desk.bench.model().load_preview == nullptr);
-    CHECK(desk.bench.messages().all().back().weight == Weight::error);
+    // What cannot be loaded is told in the preview; nothing has failed, since nothing was to be loaded.
+    const auto refusal = [&](const char* name, FileUse what) {
+        const uint64_t before = desk.bench.messages().count();
+        perform(PreviewLoad{desk.path(name), what});
+        REQUIRE(desk.bench.model().load_preview);
+        CHECK(desk.bench.messages().first_after(before, Weight::error) == nullptr);
+        CHECK_FALSE(desk.bench.model().load_preview->changes_anything);
+        return desk.bench.model().load_preview->failure;
+    };
+    CHECK(refusal("small.mask", FileUse::by_contents).find("3840") != std::string::npos);
+    CHECK(refusal("line.txt", FileUse::mask).find("line.txt") != std::string::npos);
+    CHECK(refusal("gone.mask", FileUse::by_contents).find("gone.mask") != std::string::npos);
+    desk.folder.write("floats.nrrd",
+                      "NRRD0004\ntype: float\ndimension: 3\nsizes: 24 20 16\nencoding: raw\nendian: little\n\n" +
+                          std::string(size_t{4} * 24 * 20 * 16, '\0'));
+    CHECK(refusal("floats.nrrd", FileUse::by_contents).find("choose which") != std::string::npos);
+    CHECK(desk.bench.model().load_preview->is_unclear);
+    CHECK(refusal("floats.nrrd", FileUse::offsets).empty());  // zeros change nothing
 }
 
 TEST_CASE_FIXTURE(OnDevice, "annotation dropped alone is previewed, whatever states that it is annotation")

@@ -78,7 +78,7 @@ TEST_CASE_FIXTURE(Settings, "how the picture looks is a step of the history, how
     RenderSettings expected = before;
     expected.step_voxels = 0.375;
     CHECK(bench.model().session.render == expected);
-    CHECK(bench.messages().last() == "Undone: picture: background #ffffff to #000000");
+    CHECK(bench.messages().last() == "Undone: set background from #ffffff to #000000");
 }
 
 TEST_CASE_FIXTURE(Settings, "a recorded change of an option that was removed draws nothing, and warns")

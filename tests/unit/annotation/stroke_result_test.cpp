@@ -25,6 +25,9 @@ TEST_CASE("a stroke says from which groups it took voxels, and which stayed")
         const char* words;
     };
     PaintOp into_locked = in_group(3), held = in_group(0), raising = in_group(3);
+    PaintOp filling = in_group(2), speckling = in_group(2);
+    filling.brush = Brush::fill;
+    speckling.brush = Brush::speckle;
     into_locked.locked.set(3);
     held.only_unpainted = true;
     raising.density = DensityBrush{40.0};
@@ -64,12 +67,17 @@ TEST_CASE("a stroke says from which groups it took voxels, and which stayed")
         {{.stroke = in_group(0), .regrouped = 144, .taken_from = {{1, 44}, {2, 100}}, .kept_locked = {{3, 2}}},
          "Erased 144 voxels: 100 of group 2 and 44 of group 1 (aorta); 2 voxels of group 3 (leaf trace) are locked and "
          "stayed"},
-        {{.stroke = in_group(2)},
+        {{.stroke = filling},
          "The stroke changed nothing: no voxel here is at or above the paint threshold, or all are painted already"},
         {{.stroke = in_group(0)},
-         "The stroke changed nothing: no voxel here is at or above the paint threshold, or all are unpainted already"},
+         "The stroke changed nothing: the voxel at the centre of the probe is below the paint threshold, or all are "
+         "unpainted already"},
         {{.stroke = raising_alone},
-         "The stroke changed nothing: no voxel here is at or above the paint threshold, or all are raised already"},
+         "The stroke changed nothing: the voxel at the centre of the probe is below the paint threshold, or all are "
+         "raised already"},
+        {{.stroke = speckling},
+         "The stroke changed nothing: no part at or above the paint threshold lies wholly inside the probe (a larger "
+         "probe holds larger parts), or all are painted already"},
         {{.stroke = in_group(2), .kept_locked = {{1, 7}}},
          "Nothing was painted; 7 voxels of group 1 (aorta) are locked and stayed"},
         {{.stroke = in_group(0), .kept_locked = {{1, 7}}},

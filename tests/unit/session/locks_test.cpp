@@ -4,6 +4,7 @@
 
 #include "engine/annotation/work/work.h"
 #include "engine/session/lasting_settings.h"
+#include "engine/session/words/setting_words.h"
 #include "tests/support/random_annotation.h"
 #include "tests/support/volume_files.h"
 
@@ -67,7 +68,7 @@ TEST_CASE("locking is a step like any other: journalled, undone, and told by its
         Work work(ANNOTATED_SIZE, ANNOTATED_TYPE);
         work.open(files);
         const SettingValues after = lasting_settings(session);
-        CHECK(difference_of(before, after) == "groups: 7 locked false to true");
+        CHECK(difference_of(before, after) == "locked group 7");
         REQUIRE(work.change_settings(difference_of(before, after), after));
     }
     Work work(ANNOTATED_SIZE, ANNOTATED_TYPE);
@@ -78,7 +79,7 @@ TEST_CASE("locking is a step like any other: journalled, undone, and told by its
         return locked_groups(seen.groups);
     };
     CHECK(locked() == GroupSet(0b10000110));
-    CHECK(work.undo()->label == "groups: 7 locked false to true");
+    CHECK(work.undo()->label == "locked group 7");
     CHECK(locked() == GroupSet(0b110));
     work.redo();
     CHECK(locked() == GroupSet(0b10000110));

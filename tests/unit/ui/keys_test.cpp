@@ -197,7 +197,7 @@ TEST_CASE("a person's keys replace those that ship, and a chord that means two t
     REQUIRE(keymap.conflicts().size() == 1);
     CHECK(keymap.conflicts()[0] == "F5 stands for 'Redo' and for 'Preview of the brush'; change one of them");
     CHECK_THROWS_WITH(Keymap(KeySet::modern, {{"undoo", {"Ctrl+U"}}}),
-                      "keys: 'undoo' is no shortcut; expected one listed in the help window");
+                      "keys: 'undoo' is no shortcut; expected one listed in the help window, or an action");
     CHECK_THROWS_WITH(Keymap(KeySet::modern, {{"undo", {"Ctrl+"}}}),
                       "keys: undo is 'Ctrl+'; expected a key such as Ctrl+Z, F5, PageUp or [");
     for (const char* bad : {"", "Ctrl", "ctrl+Z", "Z+Ctrl", "F26", "F0", "ZZ", "z", "Shift+Ctrl+Z"}) {
@@ -480,6 +480,32 @@ TEST_CASE("shortcuts with the same key know of each other")
     CHECK(keymap.rivals_of(*shortcut_named("undo")).empty());
 }
 
+TEST_CASE("any entry of the palette can have a key, which then makes its action")
+{
+    World world;
+    world.model.is_open = true;
+    const std::vector<PaletteEntry> entries = palette_entries(world.model, "shading");
+    const auto shading = std::ranges::find(entries, "Shading: off", &PaletteEntry::name);
+    REQUIRE(shading != entries.end());
+    REQUIRE_FALSE(shading->bound_as.empty());
+    CHECK(shading->keys.empty());
+    world.keymap = Keymap(KeySet::modern, {{shading->bound_as, {"Ctrl+J"}}, {"look_from camera=\"top\"", {"Ctrl+5"}}});
+    const Actions made = actions_of(world, 'J', CONTROL);
+    REQUIRE(made.size() == 1);
+    CHECK(text_of(made[0]) == shading->bound_as);
+    CHECK(actions_of(world, 'J', 0).empty());
+    CHECK(text_of(actions_of(world, '5', CONTROL).at(0)) == text_of(LookFrom{"top"}));
+    const std::vector<PaletteEntry> again = palette_entries(world.model, "shading");
+    CHECK(std::ranges::find(again, "Shading: off", &PaletteEntry::name)->keys == "Ctrl + J");
+    for (const PaletteEntry& entry : palette_entries(world.model, "top"))
+        if (entry.action) CHECK_FALSE(entry.bound_as.empty());
+    const Keymap rival(KeySet::modern, {{"look_from camera=\"top\"", {"Ctrl+Z"}}});
+    REQUIRE(rival.conflicts().size() == 1);
+    CHECK(rival.conflicts()[0].find("'Undo' and for 'look_from camera=\"top\"'") != std::string::npos);
+    CHECK_THROWS_AS(Keymap(KeySet::modern, {{"look_from", {"Ctrl+5"}}}), Error);
+    CHECK_THROWS_AS(Keymap(KeySet::modern, {{"no_such_thing", {}}}), Error);
+}
+
 TEST_CASE("the palette finds shortcuts by words, actions by their text and settings by their keys")
 {
     World world;
@@ -520,10 +546,19 @@ TEST_CASE("the palette finds panels and settings by words, values behind words, 
         CHECK(entry.action->as<Prefer>()->patch.find(row.id) != std::string::npos);
         CHECK(entry.action->as<Prefer>()->patch.find("\"folded\":false") != std::string::npos);
     }
-    CHECK(found("ambient", "light.ambient").completion == "light.ambient=");
-    CHECK(found("ambient 0.4", "light.ambient=0.4").action->as<Set>()->patch == R"({"light":{"ambient":0.4}})");
+    CHECK(found("ambient", "Ambient light").completion == "light.ambient=");
+    CHECK(found("ambient 0.4", "Ambient light: 0.4").action->as<Set>()->patch == R"({"light":{"ambient":0.4}})");
     for (const PaletteEntry& entry : palette_entries(world.model, "ambient 70"))
-        CHECK_MESSAGE(entry.name != "light.ambient=70", "a value out of range is offered");
+        CHECK_MESSAGE(entry.name != "Ambient light: 70", "a value out of range is offered");
+    CHECK(found("pivot", "Pivot of turning: the probe").action->as<Set>()->patch ==
+          R"({"interaction":{"pivot":"probe"}})");
+    CHECK(found("shading", "Shading: off").action->as<Set>()->patch == R"({"light":{"shaded":false}})");
+    CHECK(found("shading", "Shading: off").group == "Setting: light.shaded, now on");
+    CHECK(found("import", "Import as project...").action->as<ShowDialog>()->dialog == Dialog::import_scan);
+    CHECK(found("export", "Export...").action->as<ShowDialog>()->dialog == Dialog::export_work);
+    CHECK(found("spacing", "Correct the spacing...").action->as<ShowDialog>()->dialog == Dialog::spacing);
+    CHECK(found("label", "Label connected parts...").action->as<ShowDialog>()->dialog == Dialog::label);
+    CHECK(found("load", "Load annotation...").action->as<ShowDialog>()->dialog == Dialog::load);
     CHECK(found("top", "Look from top").action->as<LookFrom>()->camera == "top");
     world.session.groups[4].name = "leaf trace";
     CHECK(found("leaf", "Group 4 leaf trace").action->is<Set>());

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <imgui/imgui.h>
+#include <imgui/imgui_internal.h>
 #include <imgui/imgui_stdlib.h>
 
 #include "ui/files/file_list.h"
@@ -55,9 +56,42 @@ std::string first_ending(std::string_view meaning)
     return std::string(listed.substr(0, listed.find_first_of(", ")));
 }
 
+/// Draws the field of a path, with room for the button of its chooser.
+bool path_field(std::string& path, const std::string& hint_text, float width, const std::string& tooltip)
+{
+    want_glyphs(path);
+    const float button = ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x;
+    ImGui::SetNextItemWidth(width - button);
+    bool is_changed = ImGui::InputTextWithHint("##path", hint_text.c_str(), &path, ImGuiInputTextFlags_AutoSelectAll);
+    if (!ImGui::IsItemActive() && is_typed_address(path))
+        is_changed |= std::exchange(path, without_query(path)) != path;  // a query is a credential
+    if (!tooltip.empty()) hint(tooltip.c_str());
+    return is_changed;
+}
+
+/// Draws the button of the chooser, to the right of the field of a path.
+bool path_button(std::string& path, const std::filesystem::path& begin)
+{
+    ImGui::SameLine(0.0f, ImGui::GetStyle().ItemInnerSpacing.x);
+    const ImGuiID id = ImGui::GetID("##path");
+    if (ImGui::Button("...", {ImGui::GetFrameHeight(), 0.0f})) {
+        chooser_of = id;
+        const std::filesystem::path from = path.empty() ? begin : std::filesystem::path(path);
+        chooser.ask(from, places(from, {}));
+    }
+    hint("Choose a file or a folder");
+    // A chooser is drawn by the field that opened it.
+    if (chooser_of != id) return false;
+    const auto chosen = chooser.draw();
+    if (chosen) path = chosen->string();
+    return chosen.has_value();
+}
+
 class Widgets : public Fields {
 public:
-    Widgets(const std::filesystem::path& beside, bool begins) : beside_(beside), begins_(begins) {}
+    Widgets(const std::filesystem::path& beside, bool begins, std::span<const std::string_view> left_out)
+        : beside_(beside), begins_(begins), left_out_(left_out)
+    {}
     using Fields::choice;
     using Fields::color;
     using Fields::number;
@@ -65,6 +99,7 @@ public:
     using Fields::vector;
     void any_flag(std::string_view name, std::optional<bool>& value, const About& about) override
     {
+        if (is_left_out(name)) return;
         bool is_set = value.value_or(false);
         if (ImGui::Checkbox(begin_row(name).c_str(), &is_set)) value = is_set;
         tell(about);
@@ -72,6 +107,7 @@ public:
     }
     void number(std::string_view name, std::optional<double>& value, const NumberRange&, const About& about) override
     {
+        if (is_left_out(name)) return;
         double shown = value.value_or(0.0);
         if (ImGui::InputDouble(begin_row(name).c_str(), &shown, 0.0, 0.0, value ? "%.6g" : "")) value = shown;
         tell(about);
@@ -79,6 +115,7 @@ public:
     void any_whole(std::string_view name, std::optional<int64_t>& value, int64_t lower, int64_t upper,
                    const About& about) override
     {
+        if (is_left_out(name)) return;
         int64_t shown = value.value_or(lower);
         if (ImGui::InputScalar(begin_row(name).c_str(), ImGuiDataType_S64, &shown))
             value = std::clamp(shown, lower, upper);
@@ -87,6 +124,7 @@ public:
     void choice(std::string_view name, std::string& value, const std::vector<std::string_view>& names,
                 const About& about) override
     {
+        if (is_left_out(name)) return;
         constexpr float WIDTH = 8.0f;
         const std::string id = begin_row(name);
         ImGui::SetNextItemWidth(WIDTH * ImGui::GetFontSize());
@@ -100,41 +138,31 @@ public:
     }
     void text(std::string_view name, std::string& value, const About& about) override
     {
+        if (is_left_out(name)) return;
         const std::string id = begin_row(name);
         ImGui::InputTextWithHint(id.c_str(), words_for(about, VALUE_WIDTH * ImGui::GetFontSize()).c_str(), &value);
         tell(about);
     }
     void path(std::string_view name, std::filesystem::path& value, const About& about) override
     {
+        if (is_left_out(name)) return;
         std::string shown = value.string();
-        want_glyphs(shown);
         ImGui::PushID(std::string(name).c_str());
         begin_row(name);
-        const float button = ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x;
-        const float width = VALUE_WIDTH * ImGui::GetFontSize() - button;
-        ImGui::SetNextItemWidth(width);
+        const float width = VALUE_WIDTH * ImGui::GetFontSize();
         const bool is_first = std::exchange(is_before_paths_, false);
         if (is_first) first_keys.before_field(begins_);
-        if (ImGui::InputTextWithHint("##path", words_for(about, width).c_str(), &shown)) value = shown;
-        if (!ImGui::IsItemActive() && is_typed_address(shown)) value = without_query(shown);
+        bool is_changed = path_field(shown, words_for(about, width), width, tooltip_of(about));
         if (is_first) first_keys.after_field();
-        tell(about);
-        ImGui::SameLine(0.0f, ImGui::GetStyle().ItemInnerSpacing.x);
-        const ImGuiID id = ImGui::GetID("##path");
-        if (ImGui::Button("...", {ImGui::GetFrameHeight(), 0.0f})) {
-            chooser_of = id;
-            const std::filesystem::path begin = value.empty() ? new_file(name, about) : value;
-            chooser.ask(begin, places(begin, {}));
-        }
-        // The chooser is drawn by the field that opened it, and only this field takes its path.
-        if (chooser_of == id)
-            if (const auto path = chooser.draw()) value = *path;
+        is_changed |= path_button(shown, new_file(name, about));
+        if (is_changed) value = shown;
         ImGui::PopID();
     }
     void color(std::string_view, std::optional<glm::dvec4>&, bool, const About&) override {}
     void vector(std::string_view name, std::optional<glm::dvec3>& value, const NumberRange&,
                 const About& about) override
     {
+        if (is_left_out(name)) return;
         glm::dvec3 shown = value.value_or(glm::dvec3(0.0));
         if (ImGui::InputScalarN(begin_row(name).c_str(), ImGuiDataType_Double, &shown.x, 3, nullptr, nullptr, "%.6g"))
             value = shown;
@@ -178,27 +206,40 @@ private:
         if (beside_.empty() || (ending.empty() && name != "project")) return beside_.parent_path();
         return beside_.string() + "-" + std::string(name) + ending;
     }
-    /// Writes a description to the right of a widget that shows no text itself.
+    /// Returns the description if it fits; a mark otherwise, whose tooltip has it: no text is cut.
+    static std::string fitting(const char* meaning, float width, const char* mark)
+    {
+        return ImGui::CalcTextSize(meaning).x <= width ? meaning : mark;
+    }
+    /// Writes a description to the right of a widget that has no text.
     static void words_beside(const About& about, float fonts)
     {
         ImGui::SameLine();
-        ImGui::TextDisabled("%s", shortened(about.meaning, fonts * ImGui::GetFontSize()).c_str());
+        ImGui::TextDisabled("%s", fitting(about.meaning, fonts * ImGui::GetFontSize(), "(?)").c_str());
+        tell(about);
     }
-    /// Returns the description for an empty field, shortened to the field's width.
+    /// Returns the description to show in an empty field.
     static std::string words_for(const About& about, float width)
     {
-        return shortened(about.meaning, width - 2.0f * ImGui::GetStyle().FramePadding.x);
+        return fitting(about.meaning, width - 2.0f * ImGui::GetStyle().FramePadding.x, "");
     }
-    static void tell(const About& about)
+    static std::string tooltip_of(const About& about)
     {
         std::string text = about.meaning;
         if (*about.allowed || *about.unit) text += sentence("\n", *about.allowed ? about.allowed : about.unit);
-        if (*about.standard) text += sentence("\nUsually: ", about.standard);
+        if (*about.standard && !about.is_required) text += sentence("\nIf empty: ", about.standard);
+        return text;
+    }
+    static void tell(const About& about)
+    {
+        const std::string text = tooltip_of(about);
         if (!text.empty()) hint(text.c_str());
     }
+    bool is_left_out(std::string_view name) const { return std::ranges::find(left_out_, name) != left_out_.end(); }
 
     std::filesystem::path beside_;
     bool begins_ = false, is_before_paths_ = true;
+    std::span<const std::string_view> left_out_;
 };
 
 }  // namespace
@@ -210,10 +251,63 @@ bool enter_confirms()
            ImGui::IsKeyPressed(ImGui::GetKeyIndex(KEYPAD_ENTER), false);
 }
 
-bool draw_fields(const Fields::Visit& visit, const std::filesystem::path& beside, bool begins)
+bool path_chooser_is_open()
+{
+    return chooser.is_open();
+}
+
+void field_name(const char* name)
+{
+    begin_row(name);
+}
+
+bool path_row(const char* name, std::string& path, const char* meaning, const std::filesystem::path& begin, bool begins)
+{
+    ImGui::PushID(name);
+    begin_row(name);
+    static ImGuiID began = 0;
+    const ImGuiID id = ImGui::GetID("##path");
+    if (begins) began = id;
+    if (began == id) first_keys.before_field(begins);
+    bool is_changed = path_field(path, meaning, VALUE_WIDTH * ImGui::GetFontSize(), meaning);
+    if (began == id) first_keys.after_field();
+    is_changed |= path_button(path, begin);
+    ImGui::PopID();
+    return is_changed;
+}
+
+void size_dialog()
+{
+    const float width =
+        (NAME_COLUMN + VALUE_WIDTH + 4.0f) * ImGui::GetFontSize() + 4.0f * ImGui::GetStyle().WindowPadding.x;
+    ImGui::SetNextWindowSize({std::min(width, ImGui::GetMainViewport()->WorkSize.x), 0.0f});
+    ImGui::SetNextWindowScroll({0.0f, -1.0f});
+}
+
+bool more_heading()
+{
+    return ImGui::TreeNodeEx("More", ImGuiTreeNodeFlags_NoTreePushOnOpen | ImGuiTreeNodeFlags_SpanAvailWidth);
+}
+
+void dialog_note(const std::string& about, const std::string& failure)
+{
+    ImGui::PushTextWrapPos((NAME_COLUMN + VALUE_WIDTH) * ImGui::GetFontSize());
+    want_glyphs(failure);
+    if (failure.empty()) {
+        ImGui::TextDisabled("%s", about.empty() ? " " : about.c_str());
+    } else {
+        ImGui::PushStyleColor(ImGuiCol_Text, WARNING);
+        ImGui::TextUnformatted(failure.c_str());
+        ImGui::PopStyleColor();
+    }
+    ImGui::PopTextWrapPos();
+}
+
+bool draw_fields(const Fields::Visit& visit, const std::filesystem::path& beside, bool begins,
+                 std::span<const std::string_view> left_out)
 {
     const bool has_chooser = chooser.is_open();
-    Widgets widgets(beside, begins);
+    Widgets widgets(beside, begins, left_out);
     visit(widgets);
     return has_chooser;
 }

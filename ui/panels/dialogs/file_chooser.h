@@ -7,6 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "engine/workbench/actions/action.h"
+#include "engine/workbench/models/model.h"
 #include "ui/files/asked.h"
 #include "ui/files/file_list.h"
 #include "ui/panels/field_keys.h"
@@ -76,5 +78,10 @@ private:
     bool field_wants_keys_ = false, field_has_keys_ = false, scrolls_ = false;
     int field_number_ = 0;  ///< incremented to give the field a new id, so that Dear ImGui drops its edit state
 };
+
+/// Asks while the model shows the dialog, which ends with the chooser. `begin`: as for FileChooser::ask. Returns the
+/// path that was accepted, once.
+std::optional<std::filesystem::path> answer_of(FileChooser& chooser, Dialog dialog, const std::filesystem::path& begin,
+                                               const Model& model, Actions& actions);
 
 }  // namespace shvr::ui

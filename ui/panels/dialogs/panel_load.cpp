@@ -10,10 +10,12 @@
 
 #include "engine/base/error.h"
 #include "engine/workbench/actions/action_rows.h"
+#include "engine/workbench/forms/voxel_size.h"
 #include "engine/workbench/lists/load_form.h"
 #include "engine/workbench/models/preferences.h"
 #include "ui/panels/dialogs/field_widgets.h"
 #include "ui/panels/dialogs/file_chooser.h"
+#include "ui/panels/field_keys.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 
@@ -30,8 +32,9 @@ FileChooser choosing({.title = "Look at a file",
 struct LoadDialog {
     LoadForm form;
     std::string path;
-    std::vector<Choice> choices;  ///< choices that an examination of the file has found
-    int levels = 0;               ///< number of levels that an examination of the file has found; 0: not known
+    std::vector<Choice> choices;             ///< choices that the file was found to offer
+    int levels = 0;                          ///< number of levels that the file was found to have; 0: not known
+    std::string spacing_text = "1 x 1 x 1";  ///< as typed (voxel_size.h)
     bool is_asked_for = false;
 };
 LoadDialog loading;
@@ -83,24 +86,22 @@ bool level_field(int& level)
 }
 
 struct SpacingDialog {
-    glm::dvec3 spacing{1.0};
-    std::string unit;
-    bool is_asked_for = false;
+    std::string text;  ///< as typed (voxel_size.h)
+    FieldKeys keys;
+    bool is_shown = false;
 };
 SpacingDialog correcting;
 
-bool spacing_fields(glm::dvec3& spacing, std::string& unit)
+/// Draws the size of a voxel, and why what is typed is none. Returns whether it was changed to another size.
+bool spacing_field(std::string& text, glm::dvec3& spacing, std::string& unit)
 {
-    // The spacing is edited in double precision, so that 0.1 is stored as typed.
-    glm::dvec3 sides = spacing;
-    bool is_changed =
-        ImGui::InputScalarN("size of a voxel: x, y, z", ImGuiDataType_Double, &sides.x, 3, nullptr, nullptr, "%.15g");
-    if (is_changed)
-        for (int axis = 0; axis < 3; ++axis)
-            if (sides[axis] != spacing[axis]) spacing[axis] = std::max(sides[axis], 1e-12);
-    is_changed |= ImGui::InputText("unit", &unit);
-    hint("um, mm, ...; empty: unchanged");
-    return is_changed;
+    const bool is_changed = ImGui::InputText("size of a voxel", &text, ImGuiInputTextFlags_AutoSelectAll);
+    hint("As in 0.8 x 0.8 x 1.2 um, or 4 um. Without a unit, that stays as it is.");
+    const std::optional<VoxelSize> size = voxel_size_of(text);
+    if (!is_changed || !size) return false;
+    spacing = size->spacing;
+    if (!size->unit.empty()) unit = size->unit;
+    return true;
 }
 
 /// True where something changed.
@@ -175,7 +176,10 @@ void load_dialog(const Model& model, Actions& actions)
     }
     is_changed |= ImGui::Checkbox("State the spacing", &form.states_spacing);
     hint("Replaces the spacing in the file, or supplies a missing one.");
-    if (form.states_spacing) is_changed |= spacing_fields(form.spacing, form.unit);
+    if (form.states_spacing) {
+        is_changed |= spacing_field(loading.spacing_text, form.spacing, form.unit);
+        if (!voxel_size_of(loading.spacing_text)) dialog_note("", EXPECTED_VOXEL_SIZE);
+    }
     ImGui::PopItemWidth();
     const std::string settings = settings_of(form);
     const Candidate* const candidate = model.candidate;
@@ -199,7 +203,7 @@ void load_dialog(const Model& model, Actions& actions)
     const bool can_import = can_open && !candidate->is_project && settings.empty();
     ImGui::BeginDisabled(!can_import);
     if (ImGui::Button("Import as project...", button)) {
-        ask_to_import(loading.path);
+        ask_to_import(loading.path, actions);
         closes = true;
     }
     ImGui::EndDisabled();
@@ -215,48 +219,54 @@ void load_dialog(const Model& model, Actions& actions)
 
 void spacing_dialog(const Model& model, Actions& actions)
 {
-    if (std::exchange(correcting.is_asked_for, false)) {
-        correcting.spacing = model.volume.spacing;
-        correcting.unit = model.volume.unit;
+    const bool is_asked_for = model.dialog == Dialog::spacing;
+    bool is_begun = false;
+    if (is_asked_for && !std::exchange(correcting.is_shown, true)) {
+        correcting.text = text_of(VoxelSize{model.volume.spacing, model.volume.unit});
+        is_begun = true;
         ImGui::OpenPopup(SPACING);
     }
     ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
     ImGui::SetNextWindowSize({32.0f * ImGui::GetFontSize(), 0.0f});
-    if (!ImGui::BeginPopupModal(SPACING, nullptr, ImGuiWindowFlags_NoSavedSettings)) return;
+    if (!correcting.is_shown) return;
+    if (!ImGui::BeginPopupModal(SPACING, nullptr, ImGuiWindowFlags_NoSavedSettings)) {
+        correcting.is_shown = false;
+        if (is_asked_for) actions.push_back(ShowDialog{});
+        return;
+    }
     ImGui::TextWrapped("Now %s (%s).", size_in_words(model.volume).c_str(), in_words(model.volume.spacing_from));
     ImGui::PushItemWidth(14.0f * ImGui::GetFontSize());
-    spacing_fields(correcting.spacing, correcting.unit);
+    correcting.keys.before_field(is_begun);
+    CorrectSpacing action{model.volume.spacing, model.volume.unit};
+    spacing_field(correcting.text, action.spacing, action.unit);
+    correcting.keys.after_field();
     ImGui::PopItemWidth();
-    ImGui::TextWrapped("Paint and nodes stay at their voxels; lengths follow. The work is saved and opened again.");
-    const CorrectSpacing action{correcting.spacing, correcting.unit};
+    const std::optional<VoxelSize> size = voxel_size_of(correcting.text);
+    if (size) action = {size->spacing, size->unit.empty() ? model.volume.unit : size->unit};
+    const std::string why = size ? why_not(model, action) : EXPECTED_VOXEL_SIZE;
+    dialog_note("Paint and nodes stay at their voxels; lengths follow. The work is saved and opened again.", why);
     const ImVec2 button{8.0f * ImGui::GetFontSize(), 0.0f};
-    ImGui::BeginDisabled(!why_not(model, action).empty());
-    if (ImGui::Button("Correct", button) || (enter_confirms() && why_not(model, action).empty())) {
-        actions.push_back(action);
-        ImGui::CloseCurrentPopup();
-    }
+    ImGui::BeginDisabled(!why.empty());
+    const bool is_confirmed = ImGui::Button("Correct", button) || (enter_confirms() && why.empty());
     ImGui::EndDisabled();
     ImGui::SameLine();
-    if (ImGui::Button("Cancel", button) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)))
+    const bool is_left = ImGui::Button("Cancel", button) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+    if (is_confirmed || is_left || !is_asked_for) {
         ImGui::CloseCurrentPopup();
+        correcting.is_shown = false;
+        if (is_asked_for) actions.push_back(ShowDialog{});
+    }
+    if (is_confirmed) actions.push_back(action);
     ImGui::EndPopup();
 }
 
 }  // namespace
 
-void load_menu(const Model& model)
-{
-    if (ImGui::MenuItem("Open with options...")) {
-        const auto& recent = model.preferences.recent;
-        choosing.ask(recent.empty() ? std::filesystem::path() : recent.front().parent_path(),
-                     places(model.is_open ? model.session.volume_path : std::filesystem::path(), recent));
-    }
-    if (ImGui::MenuItem("Correct the spacing...", nullptr, false, model.is_open)) correcting.is_asked_for = true;
-}
-
 void load_dialogs(const Model& model, Actions& actions)
 {
-    if (const auto path = choosing.draw()) {
+    const auto& recent = model.preferences.recent;
+    const std::filesystem::path begin = recent.empty() ? std::filesystem::path() : recent.front().parent_path();
+    if (const auto path = answer_of(choosing, Dialog::open_with_options, begin, model, actions)) {
         if (loading.path != path->string()) {
             loading.path = path->string();
             loading.choices.clear();

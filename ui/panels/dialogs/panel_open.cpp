@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -27,12 +28,6 @@ FileChooser saving({.title = "Continue under another name",
                     .verb = "Save",
                     .note = "Session (.json); mask, trace and history are written next to it. Existing files stay.",
                     .wanted = FileChooser::Wanted::new_file});
-FileChooser taking({.title = "Load annotation or a curve",
-                    .verb = "Load",
-                    .note = "Mask of the scan's size, offsets, trace or transfer function. The next dialog states what "
-                            "it would change.",
-                    .wanted = FileChooser::Wanted::file});
-
 FileChooser labelled({.title = "Open the scan of a label image",
                       .verb = "Open",
                       .note = "The label image is loaded into it as its mask; undo takes that back."});
@@ -119,7 +114,7 @@ bool choosers_have_keys()
 
 bool choosers_are_busy()
 {
-    return FileChooser::is_busy() || task_dialog_waits();
+    return FileChooser::is_busy() || task_dialog_waits() || load_dialog_waits();
 }
 
 void open_dialog(const Model& model, Actions& actions)
@@ -154,23 +149,26 @@ void open_dialog(const Model& model, Actions& actions)
     }
 }
 
-void ask_for_name(const Model& model)
+std::optional<std::filesystem::path> answer_of(FileChooser& chooser, Dialog dialog, const std::filesystem::path& begin,
+                                               const Model& model, Actions& actions)
 {
-    saving.ask(std::filesystem::path(model.session_path).replace_extension().string() + "-2.json", places_of(model));
-}
-
-void ask_what_to_take(const Model& model)
-{
-    static bool was_shown = false;  // from the second time on, the dialog starts where it was left
-    const std::filesystem::path beside =
-        std::exchange(was_shown, true) ? std::filesystem::path() : model.session_path.parent_path() / "";
-    taking.ask(beside, places_of(model));
+    static std::map<Dialog, bool> was_asked;
+    bool& is_asked = was_asked[dialog];
+    if (model.dialog == dialog && !std::exchange(is_asked, true)) chooser.ask(begin, places_of(model));
+    if (model.dialog != dialog && std::exchange(is_asked, false) && chooser.is_open()) chooser.close();
+    const auto path = chooser.draw();
+    if (is_asked && !chooser.is_open()) {
+        is_asked = false;
+        actions.push_back(ShowDialog{});
+    }
+    return path;
 }
 
 void name_and_take_dialogs(const Model& model, Actions& actions)
 {
-    if (const auto path = saving.draw()) actions.push_back(SaveAs{*path});
-    if (const auto path = taking.draw(); path && model.is_open) actions.push_back(PreviewLoad{.path = *path});
+    const std::filesystem::path copy =
+        std::filesystem::path(model.session_path).replace_extension().string() + "-2.json";
+    if (const auto path = answer_of(saving, Dialog::save_as, copy, model, actions)) actions.push_back(SaveAs{*path});
     if (const auto path = annotating.draw()) actions.push_back(WorkOnCopy{*path});
     if (const auto path = labelled.draw())
         actions.push_back(TakeFile{*path, labels_of_scan.string() + "\n", FileUse::scan});

@@ -1,11 +1,17 @@
-// The dialog that states what loading a file will change, before the file is loaded.
+// The dialog that loads annotation: the file, what it is, and what loading it would change, before it does.
 
 #include <algorithm>
+#include <array>
+#include <filesystem>
 #include <string>
+#include <utility>
 
 #include <imgui/imgui.h>
 
+#include "engine/workbench/forms/form_names.h"
 #include "engine/workbench/lists/group_list.h"
+#include "ui/files/annotation_beside.h"
+#include "ui/files/asked.h"
 #include "ui/panels/dialogs/field_widgets.h"
 #include "ui/panels/imgui_keys.h"
 #include "ui/panels/panels.h"
@@ -16,8 +22,28 @@ namespace shvr::ui {
 
 namespace {
 
-constexpr const char* PREVIEW = "Load annotation?";
+constexpr const char* TITLE = "Load annotation";
 constexpr size_t MAX_ROWS_SHOWN = 12;  ///< the table scrolls beyond
+
+constexpr std::pair<FileUse, const char*> USES[] = {{FileUse::by_contents, "what it says"},
+                                                    {FileUse::mask, "mask"},
+                                                    {FileUse::offsets, "offsets"},
+                                                    {FileUse::trace, "trace"},
+                                                    {FileUse::look, "transfer function"}};
+
+struct AnnotationDialog {
+    std::string path;  ///< as typed
+    FileUse use = FileUse::by_contents;
+    bool is_shown = false, is_being_read = false;
+    std::string asked_path;   ///< the typed path that is asked about, or was
+    Asked<There> looking_at;  ///< what is at `asked_path`
+    There there = There::folder;
+    std::filesystem::path previewed;  ///< what the last preview was asked of
+    FileUse previewed_use = FileUse::by_contents;
+    Asked<std::vector<FoundFile>> looking;
+    std::vector<FoundFile> found;  ///< annotation in the folder of the scan
+};
+AnnotationDialog asking;
 
 FileUse use_of(const LoadPreview& preview)
 {
@@ -62,38 +88,144 @@ void group_table(const Groups& groups, const LoadPreview& preview)
     ImGui::EndTable();
 }
 
+/// Begins with the newest annotation in the folder of the scan, or with the file that was dropped.
+void begin(const Model& model)
+{
+    asking = {.is_shown = true};
+    if (model.load_preview) {
+        asking.path = asking.asked_path = model.load_preview->path.string();
+        asking.there = There::file;
+        asking.previewed = model.load_preview->path;
+    }
+    const std::vector<std::filesystem::path> own{model.session.mask_path, model.session.trace_path,
+                                                 model.session.density_path, model.session.volume_path};
+    asking.looking = Asked<std::vector<FoundFile>>(
+        [folder = base_of(model).parent_path(), own] { return annotation_beside(folder, own); });
+}
+
+/// Takes what the disk has answered, and asks about what was typed since.
+void follow_disk(const Model& model)
+{
+    if (auto found = asking.looking.take()) {
+        asking.found = std::move(*found);
+        if (asking.path.empty() && !asking.found.empty()) asking.path = asking.found.front().path.string();
+    }
+    if (asking.path != asking.asked_path) {
+        asking.asked_path = asking.path;
+        asking.there = There::folder;
+        asking.looking_at =
+            Asked<There>([path = placed(asking.path, base_of(model).parent_path())] { return what_is_at(path); });
+    }
+    if (const auto there = asking.looking_at.take()) asking.there = *there;
+}
+
+/// Asks for a preview of what is typed, once it names a file.
+void follow_preview(const Model& model, Actions& actions)
+{
+    const std::filesystem::path path = placed(asking.path, base_of(model).parent_path());
+    const bool is_known = asking.previewed == path && asking.previewed_use == asking.use;
+    const bool is_there = asking.there == There::file;
+    if (is_known || (!is_there && asking.previewed.empty())) return;
+    asking.previewed = is_there ? path : std::filesystem::path();
+    asking.previewed_use = asking.use;
+    actions.push_back(PreviewLoad{asking.previewed, asking.use});
+}
+
+void use_row()
+{
+    field_name("It is");
+    bool is_first = true;
+    for (const auto& [use, name] : USES) {
+        if (!std::exchange(is_first, false)) ImGui::SameLine();
+        if (ImGui::RadioButton(name, asking.use == use)) asking.use = use;
+    }
+}
+
+/// Lists annotation in the folder of the scan; a click takes a file.
+void found_row()
+{
+    if (asking.found.empty()) return;
+    field_name("Nearby");
+    constexpr size_t MAX_FILES = 4;
+    ImGui::BeginGroup();
+    for (size_t i = 0; i < std::min(asking.found.size(), MAX_FILES); ++i) {
+        const FoundFile& file = asking.found[i];
+        ImGui::PushID(int(i));
+        want_glyphs(file.name);
+        if (ImGui::Selectable((file.name + "   " + file.about).c_str(), asking.path == file.path.string(), 0,
+                              {26.0f * ImGui::GetFontSize(), 0.0f}))
+            asking.path = file.path.string();
+        ImGui::PopID();
+    }
+    ImGui::EndGroup();
+}
+
+void what_changes(const Model& model)
+{
+    const bool is_asked = !asking.previewed.empty();
+    if (asking.there == There::nothing && !asking.path.empty())
+        return dialog_note("", asking.path + ": there is no such file");
+    if (!is_asked || !model.load_preview || model.load_preview->path != asking.previewed) {
+        dialog_note(is_asked ? "is being read ..." : "A mask, density offsets, a trace or a transfer function.", "");
+        return;
+    }
+    const LoadPreview& preview = *model.load_preview;
+    if (preview.is_being_read) return dialog_note("is being read ...", "");
+    if (!preview.failure.empty()) return dialog_note("", preview.failure);
+    ImGui::TextUnformatted(preview.changes.c_str());
+    if (!preview.groups.empty()) group_table(model.session.groups, preview);
+    std::string notes;
+    for (const std::string& note : preview.notes) notes += note + '\n';
+    dialog_note(notes + (preview.changes_anything ? "Undo takes it back." : ""), "");
+}
+
 }  // namespace
 
 void load_preview_dialog(const Model& model, Actions& actions)
 {
-    if (!model.load_preview) return;
-    const LoadPreview& preview = *model.load_preview;
-    if (!ImGui::IsPopupOpen(PREVIEW)) ImGui::OpenPopup(PREVIEW);
-    const float font = ImGui::GetFontSize();
+    const bool is_wanted = model.is_open && (model.dialog == Dialog::load || model.load_preview);
+    const bool begins = is_wanted && !asking.is_shown;
+    if (begins) {
+        begin(model);
+        ImGui::OpenPopup(TITLE);
+        if (model.dialog != Dialog::load) actions.push_back(ShowDialog{Dialog::load});
+    }
+    if (!asking.is_shown) return;
     ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
-    ImGui::SetNextWindowSize({std::min(44.0f * font, ImGui::GetMainViewport()->WorkSize.x), 0.0f});
-    if (!ImGui::BeginPopupModal(PREVIEW, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
-    ImGui::PushTextWrapPos(0.0f);
-    ImGui::TextUnformatted(preview.path.c_str());
-    ImGui::TextUnformatted(preview.changes.c_str());
-    ImGui::PopTextWrapPos();
-    if (!preview.groups.empty()) group_table(model.session.groups, preview);
-    ImGui::PushTextWrapPos(0.0f);
-    for (const std::string& note : preview.notes) ImGui::TextUnformatted(note.c_str());
-    ImGui::TextDisabled("%s", preview.changes_anything ? "Undo takes it back." : " ");
-    ImGui::PopTextWrapPos();
-    const ImVec2 button{6.0f * font, 0.0f};
-    ImGui::BeginDisabled(!preview.changes_anything);
-    const bool loads = ImGui::Button("Load", button) || (preview.changes_anything && enter_confirms());
+    size_dialog();
+    if (!ImGui::BeginPopupModal(TITLE, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
+    const bool has_chooser = path_chooser_is_open();
+    path_row("File", asking.path, "a mask, density offsets, a trace or a transfer function",
+             base_of(model).parent_path() / "", begins);
+    use_row();
+    found_row();
+    follow_disk(model);
+    follow_preview(model, actions);
+    what_changes(model);
+    const LoadPreview* const preview = model.load_preview;
+    asking.is_being_read = preview && preview->is_being_read;
+    const bool can_load = preview && !preview->is_being_read && preview->failure.empty() && preview->changes_anything &&
+                          preview->path == asking.previewed && asking.path == asking.asked_path;
+    const ImVec2 button{6.0f * ImGui::GetFontSize(), 0.0f};
+    ImGui::BeginDisabled(!can_load);
+    const bool loads = ImGui::Button("Load", button) || (can_load && !has_chooser && enter_confirms());
     ImGui::EndDisabled();
     ImGui::SameLine();
-    const bool leaves = ImGui::Button("Cancel", button) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
-    if (loads)
-        actions.push_back(LoadAnnotation{preview.path, use_of(preview)});
-    else if (leaves)
-        actions.push_back(PreviewLoad{});
-    if (loads || leaves) ImGui::CloseCurrentPopup();
+    const bool leaves = ImGui::Button("Cancel", button) || !is_wanted ||
+                        (!has_chooser && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)));
+    if (loads) actions.push_back(LoadAnnotation{preview->path, use_of(*preview)});
+    if (!loads && leaves && is_wanted) actions.push_back(PreviewLoad{});
+    if (loads || leaves) {
+        if (model.dialog == Dialog::load) actions.push_back(ShowDialog{});
+        ImGui::CloseCurrentPopup();
+        asking.is_shown = false;
+    }
     ImGui::EndPopup();
+}
+
+bool load_dialog_waits()
+{
+    return asking.is_shown && (asking.is_being_read || asking.looking.is_pending() || asking.looking_at.is_pending());
 }
 
 }  // namespace shvr::ui

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <exception>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <type_traits>
 #include <utility>
@@ -12,8 +13,10 @@
 
 #include "engine/base/progress.h"
 #include "engine/workbench/actions/action_rows.h"
+#include "engine/workbench/forms/form_names.h"
 #include "ui/files/asked.h"
 #include "ui/panels/dialogs/field_widgets.h"
+#include "ui/panels/dialogs/task_rows.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 
@@ -37,92 +40,105 @@ std::string replacement(const Task& task)
 struct Verdict {
     std::string refusal;      ///< reason why the task is unavailable; empty: it is available
     std::string replacement;  ///< what it replaces
+    KnownScan scan{};         ///< the scan that an import reads
 };
 
 template <class Task>
 Verdict verdict_on(const Task& task)
 {
+    Verdict verdict;
     try {
         check(task);
+        if constexpr (requires { estimate_of(task); }) verdict.scan = estimate_of(task);
+        verdict.replacement = replacement(task);
     } catch (const std::exception& error) {
-        return {error.what(), {}};
+        verdict.refusal = error.what();
     }
-    return {{}, replacement(task)};
+    return verdict;
 }
-
-template <class Task>
-constexpr bool WRITES_FILES = !std::is_same_v<Task, EvaluateTask>;
 
 constexpr const char* WAITS = "Waiting for the disk";
 int waits_in_frame = -1;  ///< last frame in which a dialog waited for the disk
 
-/// A dialog with the options of a task; the options are kept for the next use with the same scan.
-template <class Task>
-struct TaskDialog {
-    Task task;
-    bool is_asked_for = false;
+EvaluateTask task_of(const CompareForm& form, const std::filesystem::path&)
+{
+    return form.task;
+}
 
-    void draw(const Model& model, const char* verb, Actions& actions)
+/// The dialog of a task. Each time that it is shown, it suggests names for the open document.
+template <class Form>
+class TaskDialog {
+public:
+    using Task = decltype(task_of(std::declval<const Form&>(), std::filesystem::path()));
+
+    TaskDialog(Dialog dialog, const char* verb) : dialog_(dialog), verb_(verb) {}
+
+    /// `suggested`: the form that it begins with.
+    void draw(const Model& model, Actions& actions, const std::function<Form()>& suggested)
     {
-        const bool begins = std::exchange(is_asked_for, false);
-        if (begins) ImGui::OpenPopup(Task::TITLE);
-        ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
-        if (!ImGui::BeginPopupModal(Task::TITLE, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
-        const bool has_chooser = draw_fields([&](Fields& f) { fields(f, task); }, beside(model), begins);
-        const std::string why = refusal(model);
-        if (why.empty() && !known_.replacement.empty()) {
-            ImGui::PushStyleColor(ImGuiCol_Text, WARNING);
-            ImGui::TextUnformatted(known_.replacement.c_str());
-            ImGui::PopStyleColor();
-        } else {
-            ImGui::TextDisabled("%s", why.empty() ? " " : why.c_str());
+        const bool begins = model.dialog == dialog_ && !std::exchange(is_shown_, true);
+        if (begins) {
+            form_ = suggested();
+            is_entered_ = is_known_ = false;
+            ImGui::OpenPopup(Task::TITLE);
         }
+        if (!is_shown_) return;
+        ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
+        size_dialog();
+        if (!ImGui::BeginPopupModal(Task::TITLE, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) {
+            // Another popup closed it.
+            is_shown_ = false;
+            if (model.dialog == dialog_) actions.push_back(ShowDialog{});
+            return;
+        }
+        const bool has_chooser = draw_form(form_, model, known_.scan, begins);
+        const Task task = task_of(form_, base_of(model).parent_path());
+        const std::string why = refusal(model, task);
+        const bool is_replaced = why.empty() && !known_.replacement.empty();
+        dialog_note(about(form_, model, known_.scan), is_replaced ? known_.replacement : why);
+        if (ends(task, why, has_chooser, actions) || model.dialog != dialog_) {
+            ImGui::CloseCurrentPopup();
+            is_shown_ = false;
+            if (model.dialog == dialog_) actions.push_back(ShowDialog{});
+        }
+        ImGui::EndPopup();
+    }
+    const Form& form() const { return form_; }
+
+private:
+    /// Draws the buttons. Returns whether the dialog ends, with the task among the actions if it was confirmed.
+    bool ends(const Task& task, const std::string& why, bool has_chooser, Actions& actions)
+    {
         const ImVec2 button{6.0f * ImGui::GetFontSize(), 0.0f};
-        // Enter takes effect once the disk has answered for the options as typed before Enter.
-        if (begins) is_entered_ = false;
+        // Enter waits for the disk's answer to what was typed before it.
         if (!has_chooser && enter_confirms()) is_entered_ = true;
         const bool confirms = std::exchange(is_entered_, is_entered_ && why == WAITS) && why.empty();
         ImGui::BeginDisabled(!why.empty());
-        if (ImGui::Button(verb, button) || confirms) {
-            actions.push_back(task);
-            ImGui::CloseCurrentPopup();
-        }
+        const bool is_confirmed = ImGui::Button(verb_, button) || confirms;
         ImGui::EndDisabled();
+        if (is_confirmed) actions.push_back(task);
         ImGui::SameLine();
-        if (ImGui::Button("Cancel", button) ||
-            (!has_chooser && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))))
-            ImGui::CloseCurrentPopup();
-        ImGui::EndPopup();
+        return ImGui::Button("Cancel", button) ||
+               (!has_chooser && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) || is_confirmed;
     }
-
-private:
-    /// Names output files after the scan, next to its session or file. Empty for comparisons, which write no files.
-    static std::filesystem::path beside(const Model& model)
+    std::string refusal(const Model& model, const Task& task)
     {
-        if (!model.is_open || !WRITES_FILES<Task>) return {};
-        std::filesystem::path path = model.session_path;
-        if (path.parent_path().filename() == "shvr") path = path.parent_path().parent_path();  // of a project
-        path.replace_extension();
-        for (const char* half : {".session", ".nii", ".ome"})  // of scan.nii.gz and scan.ome.tif
-            if (path.extension() == half) path.replace_extension();
-        return path;
-    }
-    std::string refusal(const Model& model)
-    {
-        const std::string why = why_not(model, Action(task));
+        std::string why = why_not(model, Action(task));
+        if constexpr (requires { why_not(form_); })
+            if (why.empty()) why = why_not(form_);
         if (!why.empty()) return why;
-        ask_disk();
-        if (is_known_) return known_.refusal;
-        return asked_.is_pending() ? WAITS : "";
+        ask_disk(task);
+        if (!is_known_) return asked_.is_pending() ? WAITS : "";
+        return takes_free_name() ? WAITS : known_.refusal;
     }
-    /// Checks the task's files in the background: after each change, and every second, since files come and go.
-    void ask_disk()
+    /// Checks files in the background: after each change, and again now and then, since files come and go.
+    void ask_disk(const Task& task)
     {
         constexpr double AGAIN_S = 1.0;
         const std::string now = line_of(Action(task));
         const bool is_other = now != asked_of_;
         if (is_other || (!asked_.is_pending() && ImGui::GetTime() - asked_s_ > AGAIN_S)) {
-            asked_ = Asked<Verdict>([task = task] { return verdict_on(task); });
+            asked_ = Asked<Verdict>([task] { return verdict_on(task); });
             asked_of_ = now;
             asked_s_ = ImGui::GetTime();
             is_known_ = is_known_ && !is_other;
@@ -133,7 +149,25 @@ private:
         }
         if (asked_.is_pending()) waits_in_frame = ImGui::GetFrameCount();
     }
+    /// A suggested project that is there already gets another name: returns whether it did. A typed one is refused.
+    bool takes_free_name()
+    {
+        if constexpr (std::is_same_v<Form, ImportForm>) {
+            if (!known_.scan || known_.scan->free_name.empty() || form_.more.overwrite) return false;
+            if (form_.project == form_.suggested) {
+                form_.project = form_.suggested = known_.scan->free_name.string();
+                return true;
+            }
+            if (known_.refusal.empty())
+                known_.refusal = form_.project + ": exists already; expected a new name, or Overwrite under More";
+        }
+        return false;
+    }
 
+    Dialog dialog_;
+    const char* verb_;
+    Form form_{};
+    bool is_shown_ = false;
     Asked<Verdict> asked_;
     Verdict known_;
     bool is_entered_ = false;  ///< Enter was pressed, and the answer of the disk is still awaited
@@ -143,56 +177,45 @@ private:
 };
 
 struct Dialogs {
-    TaskDialog<ExportTask> exporting;
-    TaskDialog<ImportTask> importing;
-    TaskDialog<LabelTask> labelling;
-    TaskDialog<EvaluateTask> evaluating;
+    TaskDialog<ExportForm> exporting{Dialog::export_work, "Export"};
+    TaskDialog<ImportForm> importing{Dialog::import_scan, "Import"};
+    TaskDialog<LabelForm> labelling{Dialog::label, "Label"};
+    TaskDialog<CompareForm> comparing{Dialog::compare, "Compare"};
+    std::filesystem::path volume_to_import;  ///< the next import is of this one
 };
 Dialogs dialogs;
 
-/// Resets the tasks when another scan is opened, since the tasks' file names are those of files of the previous scan.
-void forget_another_scan(const Model& model)
-{
-    static std::filesystem::path session;
-    if (session == model.session_path) return;
-    session = model.session_path;
-    dialogs.exporting.task = {};
-    dialogs.importing.task = {};
-    dialogs.labelling.task = {};
-}
-
 }  // namespace
 
-void ask_to_import(const std::filesystem::path& volume)
+void ask_to_import(const std::filesystem::path& volume, Actions& actions)
 {
-    dialogs.importing.task.volume = volume;
-    dialogs.importing.is_asked_for = true;
+    dialogs.volume_to_import = volume;
+    actions.push_back(ShowDialog{Dialog::import_scan});
 }
 
-void task_menu(const Model& model)
+void task_menu(const Model& model, Actions& actions)
 {
-    forget_another_scan(model);
-    load_menu(model);
-    if (ImGui::MenuItem("Import as project...")) {
-        dialogs.importing.is_asked_for = true;
-        if (model.is_open && dialogs.importing.task.volume.empty())
-            dialogs.importing.task.volume = model.session.volume_path;
-    }
-    if (ImGui::MenuItem("Export...", nullptr, false, model.is_open)) dialogs.exporting.is_asked_for = true;
-    if (ImGui::MenuItem("Label connected parts...", nullptr, false, model.is_open)) {
-        dialogs.labelling.is_asked_for = true;
-        dialogs.labelling.task.threshold = model.paint_threshold();
-    }
-    if (ImGui::MenuItem("Compare with a reference...")) dialogs.evaluating.is_asked_for = true;
+    shortcut_item("open_with_options", model, actions);
+    shortcut_item("correct_spacing", model, actions);
+    shortcut_item("import_scan", model, actions);
+    shortcut_item("export_work", model, actions);
+    shortcut_item("label_parts", model, actions);
+    shortcut_item("compare", model, actions);
 }
 
 void task_dialogs(const Model& model, Actions& actions)
 {
     load_dialogs(model, actions);
-    dialogs.exporting.draw(model, "Export", actions);
-    dialogs.importing.draw(model, "Import", actions);
-    dialogs.labelling.draw(model, "Label", actions);
-    dialogs.evaluating.draw(model, "Compare", actions);
+    dialogs.exporting.draw(model, actions, [&] {
+        ExportForm last;
+        last.mask.ending = dialogs.exporting.form().mask.ending;
+        last.trace.ending = dialogs.exporting.form().trace.ending;
+        return suggested_export(model, last);
+    });
+    dialogs.importing.draw(model, actions,
+                           [&] { return suggested_import(model, std::exchange(dialogs.volume_to_import, {})); });
+    dialogs.labelling.draw(model, actions, [&] { return suggested_label(model); });
+    dialogs.comparing.draw(model, actions, [&] { return dialogs.comparing.form(); });
 }
 
 bool task_dialog_waits()

@@ -94,7 +94,7 @@ bool list(const Model& model, Actions& actions)
     const TransferFunction automatic = automatic_transfer_function(model.statistics);
     if (preset_row("the histogram", automatic, model))
         set(actions, model, [&](Session& s) { s.transfer_function = automatic; });
-    if (ImGui::Selectable("a file ...")) ask_what_to_take(model);
+    if (ImGui::Selectable("a file ...")) actions.push_back(ShowDialog{Dialog::load});
     hint("A transfer function in a file, as those that are kept. Or drop it on the window.");
     for (const TransferPreset& preset : model.presets) {
         if (preset.is_own && !std::exchange(has_own, true)) {

@@ -40,7 +40,7 @@ TEST_CASE("a node stands at its voxel, in the volume's unit, with the probe's si
     work.perform(NodeOp{.at = {11, 10, 10}, .radius_voxels = 1.5, .group = 3});
     CHECK(work.trace().node(1) == TraceNode{{22, 30, 40}, 3.0, 3});
     CHECK(work.trace().internode_between(0, 1));
-    CHECK(work.effect(work.node_at({0, 0, 0})).label == "node, group 7");
+    CHECK(work.effect(work.node_at({0, 0, 0})).label == "added a node in group 7");
 }
 
 TEST_CASE(
@@ -53,7 +53,7 @@ TEST_CASE(
     work.perform(NodeOp{.at = {15, 20, 10}, .radius_voxels = 2.0, .group = 4});
     const TraceGraph before = work.trace();
     const NodeOp dividing{.at = {15, 10, 10}, .radius_voxels = {}, .group = {}, .divides = 0};
-    CHECK(work.effect(dividing).label == "node in internode 0");
+    CHECK(work.effect(dividing).label == "added a node in internode 0");
     work.perform(dividing);
     const TraceGraph& trace = work.trace();
     CHECK(trace.node(3) == TraceNode{{30, 30, 40}, 4.0, 3});

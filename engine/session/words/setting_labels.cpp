@@ -1,0 +1,190 @@
+#include "engine/session/words/setting_labels.h"
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/base/error.h"
+#include "engine/session/session_keys.h"
+#include "engine/session/words/number_words.h"
+
+namespace shvr {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr const char *VOXELS = "voxels", *LENGTHS = "reference lengths";
+
+constexpr SettingLabel LABELS[] = {
+    {"transfer_function.points", "points of the transfer function"},
+    {"transfer_function.points.N.intensity", "intensity of a transfer function's point"},
+    {"transfer_function.points.N.color", "colour of a transfer function's point"},
+    {"transfer_function.points.N.opacity", "opacity of a transfer function's point"},
+    {"transfer_function.preset", "preset of the transfer function"},
+    {"groups.N.visible", "visibility of a group"},
+    {"groups.N.locked", "lock of a group"},
+    {"groups.N.name", "name of a group"},
+    {"groups.N.parent", "parent of a group"},
+    {"groups.N.color", "colour of a group"},
+    {"groups.N.opacity", "opacity of a group"},
+    {"unpainted.visible", "unpainted voxels"},
+    {"unpainted.opacity", "opacity of unpainted voxels"},
+    {"light.shaded", "shading"},
+    {"light.ambient", "ambient light"},
+    {"light.diffuse", "diffuse light"},
+    {"light.specular", "highlight"},
+    {"light.shininess", "shininess"},
+    {"light.direction", "direction of the light"},
+    {"light.gradient_fade", "gradient at which shading fades"},
+    {"light.occlusion.strength", "strength of ambient occlusion"},
+    {"light.occlusion.radius", "radius of ambient occlusion", LENGTHS},
+    {"light.occlusion.rays", "rays of ambient occlusion"},
+    {"light.occlusion.full_sphere", "ambient occlusion from behind surfaces"},
+    {"light.occlusion.curve", "exponent of ambient occlusion"},
+    {"light.occlusion.mapping", "curve of ambient occlusion"},
+    {"light.occlusion.mapping.N.arrives", "arriving light at a point of the occlusion curve"},
+    {"light.occlusion.mapping.N.seen", "shown light at a point of the occlusion curve"},
+    {"light.occlusion.automatic", "automatic update of ambient occlusion"},
+    {"blend.size", "size of distance blending"},
+    {"blend.rate", "rate of distance blending"},
+    {"blend.color", "colour of distance blending"},
+    {"render.size", "size of the picture", "pixels"},
+    {"render.quality", "render quality"},
+    {"render.step_voxels", "step between samples", LENGTHS},
+    {"render.opacity_limit", "opacity at which rays end"},
+    {"render.background", "background"},
+    {"render.sampling", "sampling"},
+    {"render.paging", "paging"},
+    {"render.detail", "detail of large volumes", "voxels per pixel"},
+    {"render.skip_empty_space", "skipping of empty space"},
+    {"render.preintegration", "pre-integration of narrow peaks"},
+    {"render.exact_integral", "exact integral"},
+    {"render.smooth_borders", "smooth borders of groups"},
+    {"render.saturation", "saturation of the picture"},
+    {"view.arrangement", "arrangement of the panes"},
+    {"view.stereo.output", "output of stereo"},
+    {"view.stereo.eye_distance", "distance between the eyes"},
+    {"view.stereo.toe_in", "toe-in of the eyes"},
+    {"view.slices.paint_share", "strength of paint in slices"},
+    {"view.slices.zoom", "zoom of the slices"},
+    {"view.slices.center", "centre of the slices", VOXELS},
+    {"view.slices.black", "black level of the slices"},
+    {"view.slices.white", "white level of the slices"},
+    {"view.overview_zoom", "scale of the maps"},
+    {"view.volume", "volume"},
+    {"view.meshes", "nodes, internodes and probe"},
+    {"view.cut_box", "edges of the cutting planes"},
+    {"view.solo", "only visible group"},
+    {"interaction.resolution", "resolution in motion"},
+    {"interaction.frames_per_second", "frame rate", "frames per second"},
+    {"interaction.screenshot_scale", "scale of large screenshots"},
+    {"interaction.screenshot_marks", "scale bar, axes and groups in screenshots"},
+    {"interaction.pivot", "pivot of turning"},
+    {"interaction.scale_bar", "scale bar"},
+    {"interaction.axes", "axes"},
+    {"interaction.probe_label", "depth and filling at the probe"},
+    {"interaction.group_legend", "names of the groups"},
+    {"interaction.workspace_scale", "workspace scale"},
+    {"cut.lower", "near cutting planes", VOXELS},
+    {"cut.upper", "far cutting planes", VOXELS},
+    {"measurements", "distances"},
+    {"measurements.N.from", "first end of a distance", VOXELS},
+    {"measurements.N.to", "second end of a distance", VOXELS},
+    {"probe.radius_voxels", "radius of brush and probe", VOXELS},
+    {"probe.group", "active group"},
+    {"probe.brush", "brush"},
+    {"probe.region", "shape of the brush"},
+    {"probe.connectivity", "neighbours of a voxel"},
+    {"probe.only_unpainted", "protection of painted voxels"},
+    {"probe.voxel", "position of the probe", VOXELS},
+    {"probe.paint_threshold", "paint threshold"},
+    {"probe.haptic_threshold", "haptic threshold"},
+    {"probe.shown", "probe in rendered pictures"},
+    {"probe.shell", "iso-surface around the probe"},
+    {"probe.shell_opacity", "opacity of the iso-surface"},
+    {"probe.preview", "preview of the brush"},
+    {"probe.tool", "tool of the mouse"},
+    {"probe.guided", "guidance of the probe"},
+    {"probe.guidance", "law of guidance"},
+    {"probe.touch.mode", "mode of touch"},
+    {"probe.touch.strength", "strength of touch"},
+    {"probe.touch.surface_share", "share of the probe's ball that holds it on a surface"},
+    {"probe.touch.stiffness", "stiffness of touch", "N/m"},
+    {"probe.touch.damping", "damping of touch", "N s/m"},
+    {"probe.touch.groups", "groups that are felt"},
+    {"probe.touch.at_proxy", "tools at the middle of the touched part"},
+    {"probe.touch.overlap_radius", "radius of new nodes from what is felt"},
+    {"probe.touch.to_nodes", "attraction of tools to nodes"},
+    {"probe.touch.to_lines", "attraction of tools to centre lines"},
+    {"probe.touch.clicks", "clicks where contact begins"},
+    {"probe.touch.plane", "plane that holds the probe"},
+    {"probe.touch.feels_hidden", "touch of hidden parts"},
+    {"probe.node_radius", "radius of new nodes", VOXELS},
+    {"probe.measured_radius", "radius of new nodes from the structure"},
+    {"probe.centered_nodes", "centring of clicked nodes"},
+    {"probe.color", "colour of the probe"},
+    {"probe.opacity", "opacity of the probe"},
+    {"probe.silhouette", "silhouette of the probe"},
+    {"probe.arrow", "arrow towards the probe"},
+    {"probe.density", "density painting"},
+    {"probe.density.offset", "offset of density painting"},
+    {"probe.density.falloff", "falloff of density painting"},
+    {"probe.paints_group", "painting of groups"},
+};
+
+/// Values that their spelling does not explain.
+struct ValueWords {
+    std::string_view key, value;
+    const char* words;
+};
+constexpr ValueWords VALUES[] = {
+    {"interaction.pivot", "target", "the centre of the view"},
+    {"interaction.pivot", "probe", "the probe"},
+    {"interaction.pivot", "picked", "the picked point"},
+};
+
+std::string in_words(const json& value)
+{
+    if (value.is_number()) return number_in_words(value.get<double>());
+    if (value.is_boolean()) return value.get<bool>() ? "on" : "off";
+    if (value.is_string()) {
+        std::string text = value.get<std::string>();
+        std::ranges::replace(text, '_', ' ');
+        return text;
+    }
+    if (!value.is_array()) return {};
+    if (value.empty()) return "none";
+    if (value.front().is_object()) return sentence(value.size(), value.size() == 1 ? " point" : " points");
+    std::string text;
+    for (const json& one : value) text += (text.empty() ? "" : ", ") + in_words(one);
+    return text;
+}
+
+}  // namespace
+
+std::span<const SettingLabel> setting_labels()
+{
+    return LABELS;
+}
+
+const SettingLabel* label_of_setting(std::string_view key)
+{
+    const auto found = std::ranges::find_if(
+        LABELS, [&](const SettingLabel& each) { return SessionKey{.name = std::string(each.key)}.covers(key); });
+    return found == std::end(LABELS) ? nullptr : &*found;
+}
+
+std::string value_in_words(std::string_view key, const std::string& text)
+{
+    const json value = text.empty() ? json() : json::parse(text);
+    if (value.is_null()) return {};
+    for (const ValueWords& each : VALUES)
+        if (each.key == key && value.is_string() && value.get_ref<const std::string&>() == each.value)
+            return each.words;
+    const SettingLabel* const label = label_of_setting(key);
+    const bool has_unit = label && !label->unit.empty() && (value.is_number() || value.is_array());
+    return in_words(value) + (has_unit ? sentence(' ', label->unit) : "");
+}
+
+}  // namespace shvr

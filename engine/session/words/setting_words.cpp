@@ -1,0 +1,217 @@
+#include "engine/session/words/setting_words.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/base/error.h"
+#include "engine/session/session_keys.h"
+#include "engine/session/words/number_words.h"
+#include "engine/session/words/setting_labels.h"
+
+namespace shvr {
+
+namespace {
+
+using nlohmann::json;
+
+/// More changes than these are summed up by the name of their section.
+constexpr size_t MAX_TOLD = 3;
+
+/// A section of a session, and the words for it as a whole.
+struct SectionRow {
+    std::string_view name, prefix, words;  ///< `prefix`: of its keys
+};
+constexpr SectionRow SECTIONS[] = {
+    {"transfer_function", "transfer_function", "the transfer function"},
+    {"groups", "groups", "the colour groups"},
+    {"unpainted", "unpainted", "the look of unpainted voxels"},
+    {"light", "light", "the light"},
+    {"blend", "blend", "distance blending"},
+    {"cut", "cut", "the cutting planes"},
+    {"measurements", "measurements", "the distances"},
+    {"render", "render", "the rendering"},
+    {"picture", "render", "the look of the picture"},
+    {"view", "view", "the panes"},
+    {"interaction", "interaction", "what the window shows"},
+    {"probe", "probe", "brush and probe"},
+    {"cameras", "cameras", "the saved views"},
+};
+
+SectionRow section_named(std::string_view name)
+{
+    const auto found = std::ranges::find(SECTIONS, name, &SectionRow::name);
+    return found == std::end(SECTIONS) ? SectionRow{name, name, name} : *found;
+}
+
+struct ChangedKey {
+    std::string key;  ///< "light.ambient"
+    json from, to;    ///< null: no value
+};
+
+/// Adds the keys that differ. An array counts as one value, and an object that is new or gone as one key.
+void add_changes(const json& was, const json& is, const std::string& key, std::vector<ChangedKey>& found)
+{
+    if (was == is) return;
+    if (!was.is_object() || !is.is_object()) return found.push_back({key, was, is});
+    const auto member = [](const json& object, const std::string& name) {
+        const auto at = object.find(name);
+        return at == object.end() ? json() : *at;
+    };
+    for (const json* object : {&was, &is})
+        for (const auto& item : object->items())
+            if (object == &was || !was.contains(item.key()))
+                add_changes(member(was, item.key()), member(is, item.key()), key + "." + item.key(), found);
+}
+
+std::string text_of(const json& value)
+{
+    return value.is_null() ? std::string() : value.dump();
+}
+
+/// "set ambient light from 0.2 to 0.3", "switched shading off"
+std::string setting_change(const ChangedKey& changed)
+{
+    const SettingLabel* const known = label_of_setting(changed.key);
+    std::string label = known ? std::string(known->label) : changed.key;
+    if (!known)
+        std::ranges::replace_if(
+            label, [](char each) { return each == '.' || each == '_'; }, ' ');
+    if (changed.to.is_boolean()) return sentence("switched ", label, changed.to.get<bool>() ? " on" : " off");
+    if (changed.to.is_null())
+        return changed.from.is_object() ? sentence("switched ", label, " off")
+                                        : sentence("reset ", label, " to the default");
+    if (changed.to.is_object()) return sentence("switched ", label, " on");
+    const bool is_list = changed.to.is_array() && !changed.to.empty() && changed.to.front().is_object();
+    std::string from = value_in_words(changed.key, text_of(changed.from)),
+                to = value_in_words(changed.key, text_of(changed.to));
+    if (is_list && from == to) return "changed " + label;
+    if (from == to) from = text_of(changed.from), to = text_of(changed.to);  // they differ beyond four digits
+    if (from.empty()) return sentence("set ", label, " to ", to);
+    if (known && !known->unit.empty() && from.ends_with(known->unit)) from.erase(from.size() - known->unit.size() - 1);
+    return sentence("set ", label, " from ", from, " to ", to);
+}
+
+/// "group 3 (stem)"
+std::string group_in_words(const std::string& number, const json& groups)
+{
+    const std::string plain = "group " + number;
+    const auto group = groups.find(number);
+    if (group == groups.end() || !group->contains("name")) return plain;
+    const std::string name = (*group)["name"].get<std::string>();
+    return name == plain ? plain : plain + " (" + name + ")";
+}
+
+std::string group_change(const ChangedKey& changed, const json& was, const json& is)
+{
+    const std::string path = changed.key.substr(changed.key.find('.') + 1);
+    const size_t dot = path.find('.');
+    const std::string number = path.substr(0, dot), key = dot == std::string::npos ? "" : path.substr(dot + 1);
+    const std::string group = group_in_words(number, is.contains(number) ? is : was);
+    if (key.empty()) return (changed.to.is_null() ? "removed the look of " : "added ") + group;
+    if (key == "name") {
+        if (changed.to.is_null()) return "removed the name of group " + number;
+        const std::string name = changed.to.get<std::string>();
+        if (changed.from.is_null()) return sentence("named group ", number, ' ', name);
+        return sentence("renamed group ", number, " from ", changed.from.get<std::string>(), " to ", name);
+    }
+    if (key == "locked") return (changed.to == true ? "locked " : "unlocked ") + group;
+    if (key == "visible") return (changed.to == false ? "hid " : "showed ") + group;
+    if (key == "parent")
+        return changed.to.is_null() || changed.to == 0
+                   ? sentence("moved ", group, " to the top level")
+                   : sentence("moved ", group, " below ", group_in_words(changed.to.dump(), is));
+    const char* const what = key == "color" ? "colour" : "opacity";
+    if (changed.to.is_null()) return sentence("reset the ", what, " of ", group);
+    if (key == "color") return sentence("changed the ", what, " of ", group);
+    return sentence("set the ", what, " of ", group, " to ", value_in_words(changed.key, changed.to.dump()));
+}
+
+/// "moved the far x cutting plane to voxel 60"
+std::vector<std::string> plane_changes(const json& was, const json& is)
+{
+    const Session whole;
+    const auto at = [&](const json& cut, const char* end, int axis) {
+        const auto corner = cut.find(end);
+        if (corner != cut.end()) return (*corner)[size_t(axis)].get<double>();
+        return std::string_view(end) == "lower" ? whole.cut.lower[axis] : whole.cut.upper[axis];
+    };
+    std::vector<std::string> told;
+    bool is_whole = true;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const char* end : {"lower", "upper"}) {
+            const bool is_near = std::string_view(end) == "lower";
+            const double now = at(is, end, axis), none = is_near ? whole.cut.lower[axis] : whole.cut.upper[axis];
+            is_whole = is_whole && now == none;
+            if (now == at(was, end, axis)) continue;
+            const std::string plane = sentence("the ", is_near ? "near " : "far ", "xyz"[axis], " cutting plane");
+            told.push_back(now == none ? "removed " + plane
+                                       : sentence("moved ", plane, " to voxel ", number_in_words(std::round(now))));
+        }
+    if (is_whole && !told.empty()) return {"removed the cutting planes"};
+    return told;
+}
+
+std::string list_change(const json& was, const json& is)
+{
+    const size_t before = was.is_array() ? was.size() : 0, after = is.is_array() ? is.size() : 0;
+    if (after == 0) return "removed all distances";
+    if (after == before + 1) return "measured a distance";
+    if (after > before) return sentence("added ", after - before, " distances");
+    if (after < before) return sentence("removed ", before - after, before - after == 1 ? " distance" : " distances");
+    return "changed the distances";
+}
+
+/// Describes the difference of one section.
+std::string section_change(const std::string& name, const std::string& before, const std::string& after)
+{
+    const SectionRow section = section_named(name);
+    const std::string as_whole = sentence("changed ", section.words);
+    const auto parsed = [](const std::string& text) { return text.empty() ? json() : json::parse(text); };
+    if (name == "measurements") return list_change(parsed(before), parsed(after));
+    if (before.empty() || after.empty() || name == "transfer_function") return as_whole;
+    const json was = parsed(before), is = parsed(after);
+    std::vector<std::string> told;
+    if (name == "cut") {
+        told = plane_changes(was, is);
+    } else {
+        std::vector<ChangedKey> changes;
+        add_changes(was, is, std::string(section.prefix), changes);
+        if (changes.size() > MAX_TOLD) return as_whole;
+        for (const ChangedKey& changed : changes)
+            told.push_back(name == "groups" ? group_change(changed, was, is) : setting_change(changed));
+    }
+    if (told.empty() || told.size() > MAX_TOLD) return as_whole;
+    std::string text;
+    for (size_t i = 0; i < told.size(); ++i) text += (i == 0 ? "" : i + 1 < told.size() ? ", " : " and ") + told[i];
+    return text;
+}
+
+SettingValues settings_of(Session session)
+{
+    const json settings = json::parse(write_fields({}, [&](Fields& f) { setting_fields(f, session); }));
+    SettingValues values;
+    for (const auto& [name, value] : settings.items()) values[name] = value.dump();
+    return values;
+}
+
+}  // namespace
+
+std::string difference_of(const SettingValues& before, const SettingValues& after)
+{
+    std::string text;
+    for (const auto& [name, value] : after) {
+        const auto was = before.find(name);
+        const std::string old = was == before.end() ? std::string() : was->second;
+        if (old != value) text += (text.empty() ? "" : "; ") + section_change(name, old, value);
+    }
+    return text;
+}
+
+std::string difference_in_words(const Session& before, const Session& after)
+{
+    return difference_of(settings_of(before), settings_of(after));
+}
+
+}  // namespace shvr

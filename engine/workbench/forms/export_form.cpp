@@ -1,0 +1,86 @@
+#include "engine/workbench/forms/export_form.h"
+
+#include "engine/workbench/forms/form_names.h"
+
+namespace shvr::ui {
+
+namespace {
+
+constexpr const char* MASK_ENDINGS[] = {".nrrd", ".tif", ".zarr", ".mask"};
+constexpr const char* TRACE_ENDINGS[] = {".graphml", ".swc", ".rsml", ".txt"};
+constexpr const char* MEASURES_ENDINGS[] = {".csv"};
+
+std::filesystem::path file_of(const std::filesystem::path& base, const char* what, const ExportForm::Part& part)
+{
+    return base.string() + '-' + what + part.ending;
+}
+
+/// .mask and .nrrd hold one byte for each voxel; the other formats compress them.
+std::string size_of_mask(const Model& model, const std::string& ending)
+{
+    const Size3& size = model.volume.size;
+    const std::string bytes = bytes_in_words(double(size.x) * double(size.y) * double(size.z));
+    return (ending == ".mask" || ending == ".nrrd" ? "" : "at most ") + bytes;
+}
+
+/// Bytes that a node with its internode takes in a file, measured with traces of random positions.
+double bytes_per_node(const std::string& ending)
+{
+    if (ending == ".graphml") return 420.0;
+    if (ending == ".rsml") return 140.0;
+    return ending == ".txt" ? 110.0 : 75.0;
+}
+
+std::string size_of_trace(const Model& model, const std::string& ending)
+{
+    constexpr double HEAD = 1000.0;
+    return "about " + bytes_in_words(HEAD + bytes_per_node(ending) * double(model.trace.nodes().size()));
+}
+
+bool is_painted(const Model& model)
+{
+    for (size_t group = 1; group < model.voxels_by_group.size(); ++group)
+        if (model.voxels_by_group[group] > 0) return true;
+    return false;
+}
+
+}  // namespace
+
+std::vector<ExportRow> rows_of(ExportForm& form, const Model& model)
+{
+    const std::filesystem::path name = placed(form.base, {}).filename();
+    const bool is_traced = !model.trace.nodes().empty();
+    return {{"Mask", &form.mask, MASK_ENDINGS, file_of(name, "mask", form.mask).string(),
+             size_of_mask(model, form.mask.ending), ""},
+            {"Trace", &form.trace, TRACE_ENDINGS, file_of(name, "trace", form.trace).string(),
+             is_traced ? size_of_trace(model, form.trace.ending) : "", is_traced ? "" : "nothing is traced yet"},
+            {"Measures", &form.measures, MEASURES_ENDINGS, file_of(name, "measures", form.measures).string(), "", ""}};
+}
+
+ExportForm suggested_export(const Model& model, const ExportForm& last)
+{
+    ExportForm form = last;
+    const bool is_traced = !model.trace.nodes().empty();
+    form.base = base_of(model).string();
+    form.mask.is_written = is_painted(model);
+    form.trace.is_written = is_traced;
+    form.measures.is_written = form.mask.is_written || is_traced;
+    if (!form.measures.is_written) form.mask.is_written = true;
+    return form;
+}
+
+ExportTask task_of(const ExportForm& form, const std::filesystem::path& folder)
+{
+    ExportTask task = form.more;
+    const std::filesystem::path base = placed(form.base, folder);
+    task.mask = task.trace = task.metrics = std::filesystem::path();
+    for (std::filesystem::path* const more : {&task.offset, &task.mesh})
+        *more = placed(more->string(), base.parent_path());
+    if (base.empty() || !base.has_filename()) return task;
+    if (form.mask.is_written) task.mask = file_of(base, "mask", form.mask);
+    if (form.trace.is_written) task.trace = file_of(base, "trace", form.trace);
+    if (form.measures.is_written) task.metrics = file_of(base, "measures", form.measures);
+    return task;
+}
+
+}  // namespace shvr::ui

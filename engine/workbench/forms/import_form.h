@@ -1,0 +1,30 @@
+#pragma once
+// The dialog Import as project: the scan, the project, the size of a voxel and of the result. Pure; any thread.
+
+#include <string>
+
+#include "engine/tasks/import_task.h"
+#include "engine/workbench/models/model.h"
+
+namespace shvr::ui {
+
+struct ImportForm {
+    std::string volume, project;  ///< as typed
+    std::string suggested;        ///< the project that was suggested; one that was typed is kept
+    std::string voxel_size;       ///< as typed (voxel_size.h); empty: the file's
+    ImportTask more;              ///< all other options; those of the rows too
+};
+
+/// Returns a form for that scan, or for the open scan if the path is empty.
+ImportForm suggested_import(const Model& model, const std::filesystem::path& volume);
+/// Suggests a project for the typed scan, unless a project was typed.
+void follow_volume(ImportForm& form);
+/// Returns the folder that is suggested for a project: "/scans/leaf-project" for "/scans/leaf.tif".
+std::filesystem::path project_for(const std::filesystem::path& volume);
+/// Returns why the form cannot be carried out; empty: it can.
+std::string why_not(const ImportForm& form);
+/// `folder`: where relative names lie.
+ImportTask task_of(const ImportForm& form, const std::filesystem::path& folder);
+inline constexpr std::string_view IMPORT_ROWS_COVER[]{"volume", "project", "spacing", "unit", "downscale"};
+
+}  // namespace shvr::ui

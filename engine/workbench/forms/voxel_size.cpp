@@ -1,0 +1,64 @@
+#include "engine/workbench/forms/voxel_size.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/base/text.h"
+
+namespace shvr::ui {
+
+namespace {
+
+/// Parts "0.8x0.8x1.2um" into words, and replaces the signs between numbers by spaces.
+std::string spaced_out(const std::string& text)
+{
+    std::string signs = text, spaced;
+    for (const std::string_view sign : {"\u00d7", "*", ","})
+        for (size_t at = signs.find(sign); at != std::string::npos; at = signs.find(sign))
+            signs.replace(at, sign.size(), " ");
+    for (size_t i = 0; i < signs.size(); ++i) {
+        const char before = i > 0 ? signs[i - 1] : ' ', here = signs[i],
+                   after = i + 1 < signs.size() ? signs[i + 1] : ' ';
+        const bool is_exponent = (here == 'e' || here == 'E') && (is_digit(after) || after == '-' || after == '+');
+        const bool ends_number = is_digit(before) && !is_digit(here) && here != '.' && here != ' ' && !is_exponent;
+        if (ends_number) spaced += ' ';
+        const bool begins_number = (before == 'x' || before == 'X') && (is_digit(here) || here == '.');
+        if (begins_number) spaced += ' ';
+        spaced += here;
+    }
+    return spaced;
+}
+
+}  // namespace
+
+std::optional<VoxelSize> voxel_size_of(const std::string& text)
+{
+    const std::string spaced = spaced_out(text);
+    std::vector<double> sides;
+    VoxelSize size;
+    for (const std::string_view word : words_of(spaced)) {
+        if (word == "x" || word == "X") continue;
+        const std::optional<double> side = size.unit.empty() ? number_of(word) : std::nullopt;
+        if (side && std::isfinite(*side) && *side > 0.0)
+            sides.push_back(*side);
+        else if (size.unit.empty() && !sides.empty() && !is_digit(word[0]) && word[0] != '-')
+            size.unit = word;
+        else
+            return std::nullopt;
+    }
+    if (sides.size() != 1 && sides.size() != 3) return std::nullopt;
+    size.spacing = sides.size() == 1 ? glm::dvec3(sides[0]) : glm::dvec3(sides[0], sides[1], sides[2]);
+    if (size.unit == "\u00b5m" || size.unit == "\u03bcm") size.unit = "um";
+    return size;
+}
+
+std::string text_of(const VoxelSize& size)
+{
+    const glm::dvec3& side = size.spacing;
+    return sentence(digits_of(side.x), " x ", digits_of(side.y), " x ", digits_of(side.z),
+                    size.unit.empty() ? "" : " " + size.unit);
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,220 @@
+// What dialogs ask, as plain data: suggested names, the tasks that forms stand for, and estimates of sizes.
+
+#include <filesystem>
+
+#include <doctest/doctest.h>
+
+#include "engine/annotation/trace/trace_file.h"
+#include "engine/tasks/import_estimate.h"
+#include "engine/workbench/actions/action_rows.h"
+#include "engine/workbench/forms/export_form.h"
+#include "engine/workbench/forms/form_names.h"
+#include "engine/workbench/forms/import_form.h"
+#include "engine/workbench/forms/label_form.h"
+#include "engine/workbench/forms/voxel_size.h"
+#include "engine/workbench/words/task_words.h"
+#include "tests/support/model_world.h"
+#include "tests/support/volume_files.h"
+
+using namespace shvr;
+using namespace shvr::test;
+using namespace shvr::ui;
+
+namespace {
+
+struct Scanned : World {
+    Scanned()
+    {
+        path = "/scans/leaf.session.json";
+        session.volume_path = "/scans/leaf.tif";
+        volume.size = {64, 32, 16};
+        volume.unit = "um";
+    }
+    /// Adds a node, linked with the one before it.
+    void add_node(const glm::dvec3& at)
+    {
+        const auto number = uint32_t(trace.nodes().size());
+        trace.apply(TraceNodeChange{number, {}, TraceNode{at, 1.5, 1}}, Direction::forwards);
+        if (number > 0)
+            trace.apply(TraceInternodeChange{number, {}, TraceInternode{number - 1, number, 1}}, Direction::forwards);
+    }
+};
+
+}  // namespace
+
+TEST_CASE("suggested names lie beside the scan or the project, without its endings")
+{
+    Scanned world;
+    CHECK(base_of(world.model) == "/scans/leaf");
+    world.path = "/scans/leaf-project/shvr/session.json";
+    CHECK(base_of(world.model) == "/scans/leaf-project");
+    world.path.clear();
+    CHECK(base_of(world.model) == "/scans/leaf");
+    CHECK(stem_of("/a/b.nii.gz") == "/a/b");
+    CHECK(stem_of("/a/slices/") == "/a/slices");
+    CHECK(placed("b", "/a") == "/a/b");
+    CHECK(placed("../b", "/a/c") == "/a/b");
+    CHECK(placed("/b", "/a") == "/b");
+    CHECK(placed("", "/a").empty());
+    CHECK(project_for("/scans/leaf.ome.tif") == "/scans/leaf-project");
+    CHECK(project_for("https://host/scan.zarr").empty());
+    CHECK(bytes_in_words(32768) == "33 kB");
+    CHECK(bytes_in_words(999.0) == "999 bytes");
+    CHECK(bytes_in_words(1.44e9) == "1.4 GB");
+}
+
+TEST_CASE("an export suggests all annotation that there is, and writes what is ticked, beside the scan")
+{
+    Scanned world;
+    ExportForm form = suggested_export(world.model, {});
+    CHECK(form.mask.is_written);  // an empty one, since there is nothing else
+    CHECK_FALSE(form.trace.is_written);
+    CHECK_FALSE(rows_of(form, world.model)[1].why_not.empty());
+    world.model.voxels_by_group[3] = 7;
+    world.add_node({1.0, 2.0, 3.0});
+    form = suggested_export(world.model, form);
+    CHECK(form.base == "/scans/leaf");
+    const std::vector<ExportRow> rows = rows_of(form, world.model);
+    REQUIRE(rows.size() == 3);
+    CHECK(rows[0].file == "leaf-mask.nrrd");
+    CHECK(rows[0].size == "33 kB");  // one byte for each of 64 x 32 x 16 voxels
+    for (const ExportRow& row : rows) {
+        CHECK(row.why_not.empty());
+        CHECK(row.part->is_written);
+    }
+    ExportTask task = task_of(form, "/scans");
+    CHECK(task.mask == "/scans/leaf-mask.nrrd");
+    CHECK(task.trace == "/scans/leaf-trace.graphml");
+    CHECK(task.metrics == "/scans/leaf-measures.csv");
+    CHECK(task.offset.empty());
+    form.base = "out/spike";
+    form.measures.is_written = false;
+    form.trace.ending = ".swc";
+    form.more.mesh = "tubes.ply";
+    task = task_of(form, "/scans");
+    CHECK(task.trace == "/scans/out/spike-trace.swc");
+    CHECK(task.metrics.empty());
+    CHECK(task.mesh == "/scans/out/tubes.ply");
+    for (const char* unnamed : {"", "/scans/"}) {
+        form.base = unnamed;
+        CHECK(task_of(form, "/scans").mask.empty());
+    }
+}
+
+TEST_CASE("the estimated size of a trace is within a factor of two of its file's")
+{
+    Scanned world;
+    for (int i = 0; i < 500; ++i) world.add_node({1.0 + 0.123 * i, 20.0 + 0.017 * i, 3.0 / (i + 1)});
+    ExportForm form;
+    for (const char* ending : {".graphml", ".swc", ".rsml", ".txt"}) {
+        CAPTURE(ending);
+        form.trace.ending = ending;
+        const std::string estimate = rows_of(form, world.model)[1].size;
+        REQUIRE(estimate.starts_with("about "));
+        const double kilobytes = std::stod(estimate.substr(6));
+        const double bytes = double(trace_text(std::string("a") + ending, world.trace, space_of(world.volume)).size());
+        CAPTURE(bytes);
+        CHECK(1000.0 * kilobytes > bytes / 2.0);
+        CHECK(1000.0 * kilobytes < bytes * 2.0);
+    }
+}
+
+TEST_CASE("an import suggests a project beside the scan, until one is typed")
+{
+    Scanned world;
+    ImportForm form = suggested_import(world.model, {});
+    CHECK(form.volume == "/scans/leaf.tif");
+    CHECK(form.project == "/scans/leaf-project");
+    form.volume = "/other/stem.nrrd";
+    follow_volume(form);
+    CHECK(form.project == "/other/stem-project");
+    form.project = "mine";
+    form.volume = "/third/root.nrrd";
+    follow_volume(form);
+    const ImportTask task = task_of(form, "/scans");
+    CHECK(task.volume == "/third/root.nrrd");
+    CHECK(task.project == "/third/mine");
+    CHECK(suggested_import(world.model, "/a/b.nrrd").volume == "/a/b.nrrd");
+}
+
+TEST_CASE("what an import would make is told from the scan's header, with a free name where one is taken")
+{
+    const TemporaryFolder folder;
+    const std::filesystem::path scan =
+        folder.write("scan.nrrd",
+                     "NRRD0004\ntype: uint16\ndimension: 3\nsizes: 10 8 6\nspacings: 2 2 3\nencoding: raw\n"
+                     "endian: little\n\n" +
+                         std::string(960, '\1'));
+    ImportTask task{.volume = scan, .project = folder.path / "scan-project"};
+    ImportEstimate estimate = estimate_of(task);
+    CHECK(estimate.scan.spacing == glm::dvec3(2.0, 2.0, 3.0));
+    CHECK(estimate.size == Size3(10, 8, 6));
+    CHECK(estimate.most_bytes == doctest::Approx(960.0 * 8.0 / 7.0));
+    CHECK(estimate.free_bytes.value_or(0.0) > 0.0);
+    CHECK(estimate.free_name.empty());
+    task.downscale = 2;
+    CHECK(estimate_of(task).size == Size3(5, 4, 3));
+    std::filesystem::create_directory(task.project);
+    std::filesystem::create_directory(folder.path / "scan-project-2");
+    CHECK(estimate_of(task).free_name == folder.path / "scan-project-3");
+    task.volume = folder.path / "gone.nrrd";
+    CHECK(error_of([&] { static_cast<void>(estimate_of(task)); }).find("gone.nrrd") != std::string::npos);
+}
+
+TEST_CASE("labelling counts at the paint threshold, and writes where it is asked to")
+{
+    Scanned world;
+    world.session.probe.brush.threshold = 120.0;
+    LabelForm form = suggested_label(world.model);
+    CHECK(task_of(form, "/scans").threshold == 120.0);
+    CHECK(task_of(form, "/scans").output.empty());
+    form.writes_labels = true;
+    CHECK(task_of(form, "/scans").output == "/scans/leaf-parts.zarr");
+    CHECK(size_of_labels(form, world.model) == "at most 131 kB");
+    form.more.largest = 10;
+    CHECK(size_of_labels(form, world.model) == "at most 33 kB");
+}
+
+TEST_CASE("the size of a voxel is typed in one line, with one number or three and the unit")
+{
+    const auto read = [](const char* text) {
+        const std::optional<VoxelSize> size = voxel_size_of(text);
+        return size ? shvr::ui::text_of(*size) : std::string("none");
+    };
+    CHECK(read("0.8 x 0.8 x 1.2 um") == "0.8 x 0.8 x 1.2 um");
+    CHECK(read("  0.1,0.2 , 3 ") == "0.1 x 0.2 x 3");
+    CHECK(read("0.5*0.5*2 mm") == "0.5 x 0.5 x 2 mm");
+    CHECK(read("4 \u00b5m") == "4 x 4 x 4 um");
+    CHECK(read("2") == "2 x 2 x 2");
+    CHECK(read("0.8x0.8x1.2um") == "0.8 x 0.8 x 1.2 um");
+    CHECK(read("1e-3 mm") == "0.001 x 0.001 x 0.001 mm");
+    for (const char* wrong : {"", "um", "1 2", "1 2 3 4", "0 1 1", "-1 1 1", "1 1 nan", "1 1 1 um mm", "um 1 1 1"}) {
+        CAPTURE(wrong);
+        CHECK(read(wrong) == "none");
+    }
+    ImportForm form{.volume = "/a/b.tif", .project = "/a/p", .voxel_size = "0.1 um"};
+    CHECK(why_not(form).empty());
+    CHECK(task_of(form, "").choice.spacing == glm::dvec3(0.1));
+    CHECK(task_of(form, "").choice.unit == "um");
+    form.voxel_size = "0.1 0.2";
+    CHECK(why_not(form).find("'0.1 0.2' is no size; expected") != std::string::npos);
+    CHECK(why_not(ImportForm{}).starts_with("name the scan"));
+    CHECK(why_not(ImportForm{.volume = "/a/b.tif"}).starts_with("name the folder"));
+}
+
+TEST_CASE("what a task has done is told with its folder, counts and integers as integers")
+{
+    const std::vector<std::string> one{"/scans/leaf-mask.nrrd"},
+        three{"/scans/leaf-trace.swc", "/scans/leaf-mask.nrrd", "/scans/leaf-measures.csv"},
+        apart{"/scans/a.swc", "/other/a.nrrd"};
+    CHECK(exported_in_words(one, 262144) == "Exported leaf-mask.nrrd to /scans (262 kB)");
+    CHECK(exported_in_words(three, 0) == "Exported leaf-trace.swc, leaf-mask.nrrd and leaf-measures.csv to /scans");
+    CHECK(exported_in_words(apart, 0) == "Exported /scans/a.swc and /other/a.nrrd");
+    LabelTask task{.threshold = 1048576.0};
+    CHECK(labelled_in_words({.found = 12, .largest_voxels = 4096}, task) ==
+          "Found 12 connected parts at or above 1048576, the largest of 4096 voxels");
+    task.output = "/scans/parts.zarr";
+    CHECK(labelled_in_words({.found = 1, .largest_voxels = 1}, task) ==
+          "Found 1 connected part at or above 1048576, the largest of 1 voxel; the labels are in /scans/parts.zarr");
+    CHECK(labelled_in_words({}, LabelTask{}) == "Found 0 connected parts at or above 0");
+}
