@@ -156,7 +156,7 @@ class Signals(Seen):
         self.see("Open the example")
         self.click_on("File", "##MainMenuBar")
         self.click_on("Import as project...", "##Menu_00")
-        self.type_into("Volume", self.scan, "Import as project")
+        self.type_into("Scan", self.scan, "Import as project")
         self.type_into("Project", self.project, "Import as project")
         self.click_on("Import", "Import as project")
 

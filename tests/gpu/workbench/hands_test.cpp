@@ -371,7 +371,7 @@ TEST_CASE_FIXTURE(OnDevice,
     on.perform(EndStep{});
     CHECK(on.bench.model().measurements.empty());
     on.perform(UndoOp{});
-    CHECK(on.bench.messages().last().find("measurements: 2 to 0") != std::string::npos);
+    CHECK(on.bench.messages().last() == "Undone: removed all distances");
     CHECK(on.bench.model().session.measurements == two);
     on.perform(UndoOp{});
     CHECK(on.bench.model().measurements.size() == 1);
@@ -537,8 +537,10 @@ TEST_CASE_FIXTURE(OnDevice, "undo after a stroke that changed nothing takes no o
     on.perform(UndoOp{1});
     CHECK(on.is_painted(16, 10));
     const std::string said = on.bench.messages().last();
-    CHECK_MESSAGE(
-        said.starts_with("The last stroke changed nothing, and nothing is undone; the next undo reverts: fill"), said);
+    CHECK_MESSAGE(said ==
+                      "The last stroke changed nothing, and nothing is undone; the next undo reverts: painted group 1 "
+                      "with fill",
+                  said);
     on.perform(UndoOp{1});
     CHECK(!on.is_painted(16, 10));
     // A later action is undone at once.

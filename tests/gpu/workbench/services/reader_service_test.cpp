@@ -48,7 +48,7 @@ TEST_CASE_FIXTURE(ReaderAlone, "reader: the voxel under the probe is read, and a
 TEST_CASE_FIXTURE(ReaderAlone, "reader: two visible points are a distance, which can be copied and removed")
 {
     const MeasureAt at{.pane = 0, .pixel = {1.0, 2.0}};
-    CHECK(contains(error_of([&] { reader.act(at); }), "nothing is seen there"));
+    CHECK(contains(error_of([&] { reader.act(at); }), "Nothing is seen there"));
     seen = glm::dvec3(4.0, 5.0, 6.0);
     reader.act(at);
     CHECK(document().session.measurements.empty());

@@ -113,5 +113,5 @@ TEST_CASE_FIXTURE(TracerAlone, "tracer: a click on paint asks for its group, one
     CHECK(trace().selection().node());
     tracer.act(SelectAt{.pane = 0, .pixel = {1.0, 1.0}});
     CHECK_FALSE(trace().selection().node());
-    CHECK(contains(error_of([&] { tracer.act(NodeAt{.pane = 0, .pixel = {1.0, 1.0}}); }), "nothing is seen there"));
+    CHECK(contains(error_of([&] { tracer.act(NodeAt{.pane = 0, .pixel = {1.0, 1.0}}); }), "Nothing is seen there"));
 }
