@@ -107,7 +107,7 @@ private:
     double last_keys_s_ = 0.0;
     uint64_t drawn_revision_ = ~uint64_t(0);
     bool drew_complete_ = false;  ///< whether the last drawn interface reports the picture as sharp
-    bool drew_cut_box_ = false, drew_jobs_ = false;
+    bool drew_cut_box_ = false, drew_jobs_ = false, choosers_were_busy_ = false;
     uint64_t drawn_messages_ = 0, drawn_openings_ = 0;
     int drawn_windows_ = 0;  ///< number of windows of the interface in the last frame
     glm::dvec3 drawn_probe_voxel_{0.0};

@@ -301,6 +301,13 @@ class Seen(Window):
         """Held for a moment."""
         self.do("keydown", pressed(chord), "sleep", 0.03, "keyup", pressed(chord), pause_s=0)
 
+    def select_all(self):
+        """Of the text in the field that is typed into: Ctrl+A is held until a frame has seen it."""
+        before = self.frame()["frame"]
+        self.do("keydown", "ctrl+a", pause_s=0)
+        self.until(lambda: self.frame()["frame"] > before + 1, "a frame with Ctrl+A")
+        self.do("keyup", "ctrl+a", pause_s=0)
+
     def at_once(self, *commands):
         """All in one turn of the program, as beside a frame that takes longer than a hand: it stands still meanwhile."""
         self.program.send_signal(signal.SIGSTOP)

@@ -49,7 +49,9 @@ class Export(Seen):
         self.press("Ctrl+E")
         self.see("Writes 3 files to " + str(self.folder), WINDOW)
         self.do("key", "n", pause_s=0)              # typed into the name, not acting behind the dialog
-        self.do("key", "ctrl+a", "type", "--delay", 40, "leaf", pause_s=0)   # a relative name is beside the scan
+        self.see("n-mask.nrrd, 262 kB", WINDOW)
+        self.select_all()
+        self.do("type", "--delay", 40, "leaf", pause_s=0)   # a relative name is beside the scan
         self.see("leaf-mask.nrrd, 262 kB", WINDOW)
         self.press("Return")
         self.see_no_more("Cancel", WINDOW)
@@ -59,7 +61,9 @@ class Export(Seen):
         self.assertIn(f" to {self.folder} (", said)
         self.assertEqual(sorted(path.name for path in self.folder.glob("leaf-*")),
                          ["leaf-mask.nrrd", "leaf-measures.csv", "leaf-trace.graphml"])
-        self.assertEqual(report["nodes"], 2)
+        trace = (self.folder / "leaf-trace.graphml").read_text()
+        self.assertEqual(trace.count("<node "), 2, "letters typed into the name act on nothing behind the dialog")
+        self.assertEqual((report["undoable"], report["redoable"]), (3, 0))
 
     def test_a_mistake_is_told_in_the_dialog_and_the_dialog_stays(self):
         self.open_scan(self.write_ball(), preferences={"hints_seen": 3})
