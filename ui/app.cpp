@@ -130,7 +130,7 @@ void App::follow_workbench()
     window_.set_full_screen(bench_->shows_full_screen());
     // The end of a job removes its progress, and may show a dialog.
     if (std::exchange(drew_jobs_, bench_->shows_jobs()) != bench_->shows_jobs()) keep_drawing(AFTERGLOW_S);
-    // What a dialog waited for gives it another layout. Its job may begin and end within one turn.
+    // What a dialog waited for gives it another layout. Its job may begin and end within one iteration.
     if (std::exchange(choosers_were_busy_, choosers_are_busy()) && !choosers_are_busy()) keep_drawing(AFTERGLOW_S);
     if (std::exchange(drew_cut_box_, bench_->shows_cut_box()) != bench_->shows_cut_box()) keep_drawing(AFTERGLOW_S);
     if (std::exchange(drawn_messages_, bench_->messages().count()) != bench_->messages().count())

@@ -267,7 +267,10 @@ bool path_row(const char* name, std::string& path, const char* meaning, const st
     begin_row(name);
     static ImGuiID began = 0;
     const ImGuiID id = ImGui::GetID("##path");
-    if (begins) began = id;
+    if (begins) {
+        began = id;
+        if (ImGui::GetActiveID() == id) ImGui::ClearActiveID();  // it would keep what it shows, not take `path`
+    }
     if (began == id) first_keys.before_field(begins);
     bool is_changed = path_field(path, meaning, VALUE_WIDTH * ImGui::GetFontSize(), meaning);
     if (began == id) first_keys.after_field();

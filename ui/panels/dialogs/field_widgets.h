@@ -21,7 +21,8 @@ bool draw_fields(const Fields::Visit& visit, const std::filesystem::path& beside
 /// Draws a name at the left, for the widgets that follow it; the first of them takes the width of a value.
 void field_name(const char* name);
 /// Draws a row with a path to be typed, and a button for the chooser, which begins at `begin` while nothing is typed.
-/// `begins`: gives the keyboard to the field, with all text typed from now on. Returns whether it was changed.
+/// `begins`: gives the keyboard to the field, which then shows `path`, with all text typed from now on. Returns whether
+/// it was changed.
 bool path_row(const char* name, std::string& path, const char* meaning, const std::filesystem::path& begin,
               bool begins = false);
 /// Returns whether the chooser of a path is in front.

@@ -89,13 +89,23 @@ struct SpacingDialog {
     std::string text;  ///< as typed (voxel_size.h)
     FieldKeys keys;
     bool is_shown = false;
+    bool takes_keys = false;   ///< the field gets the keyboard in the next frame
+    bool ends_at_end = false;  ///< and then has the cursor behind the text
 };
 SpacingDialog correcting;
+
+int put_cursor_behind(ImGuiInputTextCallbackData* data)
+{
+    if (std::exchange(correcting.ends_at_end, false))
+        data->CursorPos = data->SelectionStart = data->SelectionEnd = data->BufTextLen;
+    return 0;
+}
 
 /// Draws the size of a voxel, and why what is typed is none. Returns whether it was changed to another size.
 bool spacing_field(std::string& text, glm::dvec3& spacing, std::string& unit)
 {
-    const bool is_changed = ImGui::InputText("size of a voxel", &text, ImGuiInputTextFlags_AutoSelectAll);
+    constexpr ImGuiInputTextFlags FLAGS = ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_CallbackAlways;
+    const bool is_changed = ImGui::InputText("size of a voxel", &text, FLAGS, put_cursor_behind);
     hint("As in 0.8 x 0.8 x 1.2 um, or 4 um. Without a unit, that stays as it is.");
     const std::optional<VoxelSize> size = voxel_size_of(text);
     if (!is_changed || !size) return false;
@@ -223,6 +233,7 @@ void spacing_dialog(const Model& model, Actions& actions)
     bool is_begun = false;
     if (is_asked_for && !std::exchange(correcting.is_shown, true)) {
         correcting.text = text_of(VoxelSize{model.volume.spacing, model.volume.unit});
+        correcting.takes_keys = correcting.ends_at_end = false;
         is_begun = true;
         ImGui::OpenPopup(SPACING);
     }
@@ -236,7 +247,7 @@ void spacing_dialog(const Model& model, Actions& actions)
     }
     ImGui::TextWrapped("Now %s (%s).", size_in_words(model.volume).c_str(), in_words(model.volume.spacing_from));
     ImGui::PushItemWidth(14.0f * ImGui::GetFontSize());
-    correcting.keys.before_field(is_begun);
+    correcting.keys.before_field(std::exchange(correcting.takes_keys, false) || is_begun);
     CorrectSpacing action{model.volume.spacing, model.volume.unit};
     spacing_field(correcting.text, action.spacing, action.unit);
     correcting.keys.after_field();
@@ -247,7 +258,10 @@ void spacing_dialog(const Model& model, Actions& actions)
     dialog_note("Paint and nodes stay at their voxels; lengths follow. The work is saved and opened again.", why);
     const ImVec2 button{8.0f * ImGui::GetFontSize(), 0.0f};
     ImGui::BeginDisabled(!why.empty());
-    const bool is_confirmed = ImGui::Button("Correct", button) || (enter_confirms() && why.empty());
+    const bool is_entered = enter_confirms();
+    const bool is_confirmed = ImGui::Button("Correct", button) || (is_entered && why.empty());
+    // Enter has made the field release the keyboard: typing goes on where it was.
+    if (is_entered && !why.empty()) correcting.takes_keys = correcting.ends_at_end = true;
     ImGui::EndDisabled();
     ImGui::SameLine();
     const bool is_left = ImGui::Button("Cancel", button) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));

@@ -35,8 +35,9 @@ struct AnnotationDialog {
     std::string path;  ///< as typed
     FileUse use = FileUse::by_contents;
     bool is_shown = false, is_being_read = false;
-    std::string asked_path;   ///< the typed path that is asked about, or was
-    Asked<There> looking_at;  ///< what is at `asked_path`
+    bool is_suggested = false;  ///< the path was just taken from `found`, and its field is to show it
+    std::string asked_path;     ///< the typed path that is asked about, or was
+    Asked<There> looking_at;    ///< what is at `asked_path`
     There there = There::folder;
     std::filesystem::path previewed;  ///< what the last preview was asked of
     FileUse previewed_use = FileUse::by_contents;
@@ -108,7 +109,10 @@ void follow_disk(const Model& model)
 {
     if (auto found = asking.looking.take()) {
         asking.found = std::move(*found);
-        if (asking.path.empty() && !asking.found.empty()) asking.path = asking.found.front().path.string();
+        if (asking.path.empty() && !asking.found.empty()) {
+            asking.path = asking.found.front().path.string();
+            asking.is_suggested = true;
+        }
     }
     if (asking.path != asking.asked_path) {
         asking.asked_path = asking.path;
@@ -196,7 +200,7 @@ void load_preview_dialog(const Model& model, Actions& actions)
     if (!ImGui::BeginPopupModal(TITLE, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
     const bool has_chooser = path_chooser_is_open();
     path_row("File", asking.path, "a mask, density offsets, a trace or a transfer function",
-             base_of(model).parent_path() / "", begins);
+             base_of(model).parent_path() / "", std::exchange(asking.is_suggested, false) || begins);
     use_row();
     found_row();
     follow_disk(model);
