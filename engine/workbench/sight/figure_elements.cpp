@@ -29,7 +29,7 @@ double tick_step(double range)
     return 10.0 * power;
 }
 
-std::string number_in_words(double value)
+std::string tick_in_words(double value)
 {
     char text[32];
     std::snprintf(text, sizeof text, "%.6g", value == 0.0 ? 0.0 : value);
@@ -201,7 +201,7 @@ private:
             const double y = begin.y + height * (1.0 - (tick - lower) / range);
             const glm::dvec2 from(begin.x + width + 1.0, y - 0.5), to = from + glm::dvec2(0.3 * line_, 1.0);
             rectangle(from, to, ink_);
-            numbers.push_back({{to.x + 0.2 * line_, y}, {0.0, 0.5}, number_in_words(tick)});
+            numbers.push_back({{to.x + 0.2 * line_, y}, {0.0, 0.5}, tick_in_words(tick)});
         }
         write(numbers, line_);
     }

@@ -131,6 +131,7 @@ std::vector<Action> samples()
             LookAtSelection{},
             Prefer{R"({"layout":null,"theme":"light"})"},
             ShowPreferences{false},
+            ShowDialog{Dialog::export_work},
             FocusOn{"menu"},
             ShowFullScreen{false},
             Quit{},
