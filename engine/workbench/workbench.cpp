@@ -63,9 +63,9 @@ bool Workbench::apply(const Action& action)
         say(sentence(row_of(action).name, ": ", told_of(error)), Weight::error);
         return false;
     } catch (const std::exception& error) {
-        // What was unavailable has not failed: the person is told why, like of anything that was done.
-        const bool is_declined =
-            dynamic_cast<const Declined*>(&error) != nullptr || !ui::why_not(model(), action).empty();
+        // What was unavailable has not failed, but work that is not saved when a person asks for it needs attention.
+        const bool is_unavailable = dynamic_cast<const Declined*>(&error) || !ui::why_not(model(), action).empty();
+        const bool is_declined = is_unavailable && !action.as<SaveOp>();
         say(told_of(error), is_declined ? Weight::done : Weight::error);
         return false;
     }
