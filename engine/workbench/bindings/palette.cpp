@@ -160,7 +160,7 @@ std::vector<std::string> few_values(const SessionKey& key)
     return values;
 }
 
-/// Adds the other values of settings that have few, and asks for the value of the others.
+/// Adds the other values of settings that have few and may have those now, and asks for the value of the others.
 void add_settings(std::vector<PaletteEntry>& entries, const Model& model, std::string_view text)
 {
     constexpr size_t MAX_SETTINGS = 24;
@@ -178,6 +178,7 @@ void add_settings(std::vector<PaletteEntry>& entries, const Model& model, std::s
             if (value == now) continue;
             PaletteEntry entry = typed(model, title + ": " + value_in_words(key.name, value), "",
                                        [&]() -> Action { return Set{patch_of(sentence(key.name, '=', value))}; });
+            if (!entry.why_not.empty()) continue;
             entry.group = about;
             entries.push_back(std::move(entry));
         }
