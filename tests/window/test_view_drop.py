@@ -147,6 +147,7 @@ class Drop(Seen):
             self.drop(mask)
             self.see("2048 voxels change their group.", self.PREVIEW)
             self.see("+2048", self.PREVIEW)
+            self.see("Cancel", self.PREVIEW)   # the buttons, which the title's "Load" is not
             self.click_on(button, self.PREVIEW)
             self.see_no_more("Cancel", self.PREVIEW)
             if button == "Cancel":

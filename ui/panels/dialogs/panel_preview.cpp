@@ -25,7 +25,7 @@ namespace {
 constexpr const char* TITLE = "Load annotation";
 constexpr size_t MAX_ROWS_SHOWN = 12;  ///< the table scrolls beyond
 
-constexpr std::pair<FileUse, const char*> USES[] = {{FileUse::by_contents, "what it says"},
+constexpr std::pair<FileUse, const char*> USES[] = {{FileUse::by_contents, "as it states"},
                                                     {FileUse::mask, "mask"},
                                                     {FileUse::offsets, "offsets"},
                                                     {FileUse::trace, "trace"},
@@ -40,6 +40,7 @@ struct AnnotationDialog {
     Asked<There> looking_at;    ///< what is at `asked_path`
     There there = There::folder;
     std::filesystem::path previewed;  ///< what the last preview was asked of
+    std::filesystem::path shown;      ///< the file of the model's preview in the last frame; empty: there was none
     FileUse previewed_use = FileUse::by_contents;
     Asked<std::vector<FoundFile>> looking;
     std::vector<FoundFile> found;  ///< annotation in the folder of the scan
@@ -89,15 +90,24 @@ void group_table(const Groups& groups, const LoadPreview& preview)
     ImGui::EndTable();
 }
 
-/// Begins with the newest annotation in the folder of the scan, or with the file that was dropped.
+/// Takes the file of a preview that this dialog has not asked for, because it was dropped. Returns whether it did.
+bool follow_drops(const Model& model)
+{
+    const std::filesystem::path present = model.load_preview ? model.load_preview->path : std::filesystem::path();
+    const bool is_dropped = std::exchange(asking.shown, present) != present && present != asking.previewed;
+    if (!is_dropped || present.empty()) return false;
+    asking.path = asking.asked_path = present.string();
+    asking.there = There::file;
+    asking.previewed = present;
+    asking.use = asking.previewed_use = FileUse::by_contents;
+    return true;
+}
+
+/// Begins with the file that was dropped, or else with the newest annotation in the folder of the scan.
 void begin(const Model& model)
 {
     asking = {.is_shown = true};
-    if (model.load_preview) {
-        asking.path = asking.asked_path = model.load_preview->path.string();
-        asking.there = There::file;
-        asking.previewed = model.load_preview->path;
-    }
+    if (follow_drops(model)) return;
     const std::vector<std::filesystem::path> own{model.session.mask_path, model.session.trace_path,
                                                  model.session.density_path, model.session.volume_path};
     asking.looking = Asked<std::vector<FoundFile>>(
@@ -137,7 +147,7 @@ void follow_preview(const Model& model, Actions& actions)
 
 void use_row()
 {
-    field_name("It is");
+    field_name("Contents");
     bool is_first = true;
     for (const auto& [use, name] : USES) {
         if (!std::exchange(is_first, false)) ImGui::SameLine();
@@ -199,8 +209,9 @@ void load_preview_dialog(const Model& model, Actions& actions)
     size_dialog();
     if (!ImGui::BeginPopupModal(TITLE, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
     const bool has_chooser = path_chooser_is_open();
+    const bool is_filled = follow_drops(model) || std::exchange(asking.is_suggested, false);
     path_row("File", asking.path, "a mask, density offsets, a trace or a transfer function",
-             base_of(model).parent_path() / "", std::exchange(asking.is_suggested, false) || begins);
+             base_of(model).parent_path() / "", is_filled || begins);
     use_row();
     found_row();
     follow_disk(model);

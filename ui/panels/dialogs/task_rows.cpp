@@ -42,12 +42,12 @@ void export_row(const ExportRow& row)
     }
     ImGui::EndDisabled();
     ImGui::SameLine();
-    const std::string words = !row.why_not.empty() ? row.why_not
-                              : row.size.empty()   ? row.file
-                                                   : row.file + ", " + row.size;
+    const std::string size = row.why_not.empty() && !row.size.empty() ? ", " + row.size : "";
+    const std::string& words = row.why_not.empty() ? row.file : row.why_not;
     want_glyphs(words);
-    ImGui::TextDisabled("%s", shortened(words, 17.5f * font).c_str());
-    hint(words.c_str());
+    const float left = 17.5f * font - ImGui::CalcTextSize(size.c_str()).x;
+    ImGui::TextDisabled("%s", (shortened(words, left) + size).c_str());
+    hint((words + size).c_str());
     ImGui::PopID();
 }
 
@@ -75,10 +75,10 @@ void reduction_row(ImportTask& task)
 
 void neighbours_row(LabelTask& task)
 {
-    constexpr const char* NAMES[] = {"over faces (6 neighbours)", "over faces, edges and corners (26)"};
-    field_name("Joined");
+    constexpr const char* NAMES[] = {"6 (faces)", "26 (faces, edges and corners)"};
+    field_name("Neighbours");
     const bool has_corners = task.connectivity == Connectivity::corners;
-    if (!ImGui::BeginCombo("##joined", NAMES[has_corners])) return;
+    if (!ImGui::BeginCombo("##neighbours", NAMES[has_corners])) return;
     if (ImGui::Selectable(NAMES[0], !has_corners)) task.connectivity = Connectivity::faces;
     if (ImGui::Selectable(NAMES[1], has_corners)) task.connectivity = Connectivity::corners;
     ImGui::EndCombo();
