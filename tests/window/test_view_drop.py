@@ -182,7 +182,12 @@ class Drop(Seen):
         self.do("key", "ctrl+a", "type", "--delay", 20, self.folder / "gone.json", pause_s=0)
         self.see(str(self.folder / "gone.json"), "Load annotation")
         self.see(f"{self.folder / 'gone.json'}: there is no such file", "Load annotation")
-        self.select_all()
+        def is_emptied():   # a Ctrl+A may come between two frames
+            self.select_all()
+            self.press("BackSpace")
+            self.see_frames()
+            return self.seen("a mask, density offsets, a trace or a transfer function", "Load annotation")
+        self.until(is_emptied, "empty field")
         self.do("type", "--delay", 20, curve, pause_s=0)
         self.see(str(curve), "Load annotation")
         self.see("The transfer function would be replaced.", self.PREVIEW)
