@@ -15,6 +15,7 @@
 #include "engine/workbench/actions/action_rows.h"
 #include "engine/workbench/forms/form_names.h"
 #include "ui/files/asked.h"
+#include "ui/files/file_list.h"
 #include "ui/panels/dialogs/field_widgets.h"
 #include "ui/panels/dialogs/task_rows.h"
 #include "ui/panels/panels.h"
@@ -49,7 +50,9 @@ Verdict verdict_on(const Task& task)
     Verdict verdict;
     try {
         check(task);
-        if constexpr (requires { estimate_of(task); }) verdict.scan = estimate_of(task);
+        // The server of an address is asked once the import begins, not while a person types.
+        if constexpr (requires { estimate_of(task); })
+            if (!is_typed_address(task.volume.string())) verdict.scan = estimate_of(task);
         verdict.replacement = replacement(task);
     } catch (const std::exception& error) {
         verdict.refusal = error.what();
