@@ -231,7 +231,7 @@ void add_render(CLI::App& program)
         "--scale-bar, --color-bar, --legend, --axes, --title and --text are drawn in black or white, whichever stands "
         "out\n"
         "from the background; black on a transparent one. In perspective the scale bar holds in the plane that its\n"
-        "label names. Elements that do not fit are left out, with a warning.\n\n"
+        "label names. Texts that do not fit are wrapped or shortened and other elements left out, with a warning.\n\n"
         "A movie goes from view to view of --keys, slowing down at each: the camera turns the shortest way, and\n"
         "transfer function, groups, light and cuts change along. --turntable turns at constant speed about the\n"
         "axis of the volume that points upwards, with --keys in addition. Each run makes the same frames. A .webm or\n"

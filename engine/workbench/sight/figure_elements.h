@@ -21,7 +21,7 @@ struct FigureText {
 struct FigureElements {
     bool scale_bar = false;  ///< in each view and slice: a line of a rounded length. In perspective its label names the
                              ///< plane in which it holds
-    bool color_bar = false;  ///< colours of the transfer function, as opaque as it is relative to its maximum
+    bool color_bar = false;  ///< colours of the transfer function, and its opacity relative to its maximum
     bool legend = false;     ///< colours and names of the groups that are drawn
     bool axes = false;       ///< directions of x, y and z
     std::string title;
@@ -40,8 +40,9 @@ struct FigureScene {
     std::span<const Pane> panes;
     std::span<const uint8_t> groups;
 };
-/// Title, legend, colour bar, texts and axes are drawn in the first pane. `left_out`: receives a sentence for each
-/// element that cannot be drawn, with the reason.
+/// Title, legend, colour bar, texts and axes are drawn in the first pane, and no element over another, except for texts
+/// with no free place on either side of their points. Line ends in title and texts begin new lines. `left_out`: receives
+/// a sentence for each element that is left out or shortened, with the reason.
 Figure figure_of(const FigureElements& elements, const FigureScene& scene, const TextDrawer& draw_texts,
                  std::vector<std::string>& left_out);
 

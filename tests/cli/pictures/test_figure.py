@@ -53,10 +53,50 @@ class Figure(CliTest):
             self.assertEqual([color == BLACK for color in rows[y]], expected)
         self.assertTrue(all(color == WHITE for y in range(SIDE - EDGE, SIDE) for color in rows[y]))
         self.assertTrue(any(color != WHITE for y in range(SIDE - EDGE - 14, SIDE - EDGE - 3) for color in rows[y]))
-        # The words of a perspective, which name the plane, are longer.
+        # The words of a perspective, which name the plane, are longer, where there is room for them.
+        size = ["--size", "320x96"]
+        blank = self.picture(*size)
+        wide, narrow = (changed(blank, self.picture("--scale-bar", *size, camera=camera)) for camera in ("front", FLAT))
+        self.assertLess(wide[0], narrow[0])
+        small = changed(self.picture(), self.picture("--scale-bar", camera="front", warnings=[
+            "the scale bar holds in the plane of the target: the picture is too small to say it"]))
+        self.assertGreaterEqual(small[0], EDGE - 1)
+
+    def test_words_are_wrapped_or_shortened_and_never_cut_off(self):
         blank = self.picture()
-        wide = changed(blank, self.picture("--scale-bar", camera="front"))
-        self.assertLess(wide[0], changed(blank, rows)[0])
+        one = changed(blank, self.picture("--title", "Bellis"))
+        two = changed(blank, self.picture("--title", "Bellis perennis"))
+        self.assertEqual(self.picture("--title", "Bellis\nperennis"), self.picture("--title", "Bellis perennis"))
+        self.assertGreater(two[3], one[3] + 8)
+        warning = "the title is shortened: the picture is too small for it"
+        four = changed(blank, self.picture("--title", "Bellis perennis " * 6, warnings=[warning]))
+        for box in (one, two, four):
+            self.assertTrue(EDGE - 1 <= box[0] and box[2] <= SIDE - EDGE + 1 and box[3] < SIDE / 2 + 8, box)
+        long = changed(blank, self.picture("--text", f"6,12,18:{'stem' * 20}", warnings=["is shortened"]))
+        self.assertTrue(21 <= long[0] and 80 < long[2] < SIDE, long)
+        self.assertEqual(changed(blank, self.picture("--text", "6,12,18:a\nb"))[0], 22)
+
+    def test_no_element_is_drawn_over_another(self):
+        size, function = ["--size", "160x160"], self.function("0.5")
+        bar = changed(self.picture(*size, *function), self.picture(*size, "--color-bar", *function))
+        both = self.picture(*size, "--axes", "--title", "a b", "--color-bar", *function)
+        without = self.picture(*size, "--axes", "--title", "a b", *function)
+        left, top, right, bottom = changed(without, both)
+        self.assertLess(bottom, bar[3])  # the axes need room below it
+        self.assertTrue(all(color == WHITE for row in without[top:bottom] for color in row[left:right]))
+        self.picture("--size", "120x120", "--axes", "--title", "a b", "--color-bar", *function,
+                     warnings=["the colour bar is left out: the picture is too small for it"])
+        # A text goes to the other side of its point where something is there.
+        blank = self.picture()
+        right = changed(blank, self.picture("--text", "11,12,12:abc"))
+        taken = self.picture("--text", "15,12,12:abc")
+        left = changed(taken, self.picture("--text", "15,12,12:abc", "--text", "11,12,12:abc"))
+        self.assertTrue(right[2] > 60 and left[0] < 25 and left[2] < 48, (right, left))
+
+    @staticmethod
+    def function(opacity):
+        return ["--set", 'transfer_function={"points":[{"intensity":1000,"color":"#ff0000","opacity":0.5},'
+                         '{"intensity":2000,"color":"#0000ff","opacity":%s}]}' % opacity]
 
     def test_each_element_is_where_it_belongs(self):
         blank = self.picture()
@@ -92,8 +132,7 @@ class Figure(CliTest):
         self.assertFalse(any(color == (0.0, 1.0, 0.0) for row in with_it for color in row))  # a hidden group
 
     def test_a_colour_bar_has_the_colours_of_the_transfer_function(self):
-        function = ["--set", 'transfer_function={"points":[{"intensity":1000,"color":"#ff0000","opacity":0.5},'
-                             '{"intensity":2000,"color":"#0000ff","opacity":0.5}]}']
+        function = self.function("0.5")
         side, height = 120, 48
         blank = self.picture("--size", f"{side}x{side}", *function)
         rows = self.picture("--size", f"{side}x{side}", "--color-bar", *function)
@@ -105,6 +144,12 @@ class Figure(CliTest):
             blue = 1 - (row + 0.5) / height
             for value, expected in zip(rows[first + row][x], (1 - blue, 0, blue)):
                 self.assertAlmostEqual(value, expected, places=5)
+        # All colours at full strength, and the opacity beside them: as wide as 7 pixels at its maximum.
+        fading = self.picture("--size", f"{side}x{side}", "--color-bar", *self.function("0"))
+        for row in range(1, height):
+            self.assertEqual(fading[first + row][x], rows[first + row][x])
+            dark = sum(1 - color[0] for color in fading[first + row][EDGE + 13:EDGE + 20])
+            self.assertAlmostEqual(dark, 7 * (row + 0.5) / height, delta=0.02)
 
     def test_words_stand_out_from_the_background(self):
         for background, colors in [("#ffffff", {BLACK}), ("#000000", {WHITE}), ("#ffffff00", {BLACK})]:
@@ -119,8 +164,8 @@ class Figure(CliTest):
 
     def test_what_cannot_be_drawn_is_named(self):
         self.picture("--legend", "--color-bar", "--text", "100,12,12:far", "--title", "a", warnings=[
-            "the legend is left out: no group is painted or traced, and visible",
             "the colour bar is left out: the transfer function draws nothing",
+            "the legend is left out: no group is painted or traced, and visible",
             'the text "far" is left out: its point is outside of the picture'])
         self.picture("--axes", "--scale-bar", "--size", "20x20", warnings=["the scale bar is left out", "the axes are left out"])
 

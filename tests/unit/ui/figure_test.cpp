@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+#include "engine/workbench/sight/figure_texts.h"
+
 using namespace shvr;
 using namespace shvr::ui;
 
@@ -21,7 +23,46 @@ ImageF dark(int width, int height)
     return {width, height, std::vector<float>(size_t(width) * size_t(height) * 4, 0.0f)};
 }
 
+/// Draws each byte 10 pixels wide.
+std::vector<TextImage> draw_bytes(std::span<const std::string> texts, double height)
+{
+    std::vector<TextImage> images;
+    for (const std::string& text : texts) images.push_back({{int(10 * text.size()), int(height)}, {}});
+    return images;
+}
+
 }  // namespace
+
+TEST_CASE("a text that is too wide is shortened between characters")
+{
+    CHECK(shortened("vascular", 80.0, 12.0, draw_bytes) == "vascular");
+    CHECK(shortened("vascular", 79.0, 12.0, draw_bytes) == "vasc...");
+    CHECK(shortened("a vascular", 55.0, 12.0, draw_bytes) == "a...");
+    CHECK(shortened("\u00b5\u00b5\u00b5", 59.0, 12.0, draw_bytes) == "\u00b5...");
+    CHECK(shortened("vascular", 39.0, 12.0, draw_bytes).empty());
+    CHECK(shortened("", 39.0, 12.0, draw_bytes).empty());
+}
+
+TEST_CASE("a text is split at line ends and wrapped at spaces, and what is missing is stated")
+{
+    const auto lines = [](const std::string& text, double width, size_t most) {
+        return lines_of(text, width, 12.0, most, draw_bytes);
+    };
+    using Lines = std::vector<std::string>;
+    const FittedLines whole = lines("one two\r\nthree\n\n four", 75.0, 5);
+    CHECK(whole.lines == Lines{"one two", "three", "four"});
+    CHECK_FALSE(whole.is_shortened);
+    CHECK(lines("one two three", 65.0, 3).lines == Lines{"one", "two", "three"});
+    const FittedLines too_many = lines("one two three", 65.0, 2);
+    CHECK(too_many.lines == Lines{"one", "two..."});
+    CHECK(too_many.is_shortened);
+    const FittedLines too_wide = lines("a vascular bundle", 70.0, 3);
+    CHECK(too_wide.lines == Lines{"a", "vasc...", "bundle"});
+    CHECK(too_wide.is_shortened);
+    CHECK(lines("vascular", 20.0, 3).lines.empty());
+    CHECK(lines("one\n \n", 65.0, 1).lines == Lines{"one"});
+    CHECK_FALSE(lines("one\n \n", 65.0, 1).is_shortened);
+}
 
 TEST_CASE("a stamp covers its pixels of its pane, and no others, whatever bands the picture comes in")
 {

@@ -140,10 +140,13 @@ std::vector<StatedView> stated_views(const std::string& keys)
 
 void check_view(const StatedView& view, const Session& session, const VolumeInfo& volume)
 {
-    if (view.session)
-        expect_volume(view, session);
-    else
+    if (view.session) return expect_volume(view, session);
+    try {
         check_camera(view.camera, session, volume);
+    } catch (const Error& error) {
+        fail("--keys: view ", in_quotes(view.name), ": ", error.what(),
+             "; a view may also be settings in braces, a session (.json) or a picture that holds one (.png)");
+    }
 }
 
 MovieView view_of(const StatedView& view, const Opened& opened, const std::string& camera)

@@ -1,0 +1,103 @@
+#include "engine/workbench/sight/figure_pane.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/workbench/sight/figure_texts.h"
+
+namespace shvr::ui {
+
+namespace {
+
+constexpr glm::dvec3 BLACK(0.0), WHITE(1.0);
+constexpr uint8_t OPAQUE = 255, RIM = 200;
+
+}  // namespace
+
+FigurePane::FigurePane(const PixelBox& box, const glm::dvec4& background, double line, const TextDrawer& draw_texts)
+    : size_(box.end - box.begin), line_(line), draw_texts_(draw_texts), part_{.box = box, .strokes = {}, .stamps = {}}
+{
+    const double luminance = glm::dot(glm::dvec3(background), glm::dvec3(0.2126, 0.7152, 0.0722));
+    const bool is_light = background.a < 0.5 || luminance > 0.18;  // transparent pictures are put on paper
+    ink_ = is_light ? BLACK : WHITE;
+    rim_ = is_light ? WHITE : BLACK;
+}
+
+double FigurePane::rim_width() const
+{
+    return std::max(1.0, std::round(line_ / 12.0));
+}
+
+bool FigurePane::is_free(const Box& box) const
+{
+    const auto overlaps = [&](const Box& other) {
+        return glm::all(glm::lessThan(box.begin, other.end)) && glm::all(glm::lessThan(other.begin, box.end));
+    };
+    return glm::all(glm::greaterThanEqual(box.begin, glm::dvec2(0.0))) &&
+           glm::all(glm::lessThanEqual(box.end, size_)) && std::ranges::none_of(taken_, overlaps);
+}
+
+void FigurePane::rectangle(const glm::dvec2& begin, const glm::dvec2& end, const glm::dvec3& color)
+{
+    Stamp stamp{.begin = glm::ivec2(glm::floor(begin)), .pixels{}, .coverage{}, .color = color};
+    stamp.pixels = glm::ivec2(glm::ceil(end)) - stamp.begin;
+    const auto overlap = [](double pixel, double from, double to) {
+        return std::max(std::min(pixel + 1.0, to) - std::max(pixel, from), 0.0);
+    };
+    for (int y = 0; y < stamp.pixels.y; ++y)
+        for (int x = 0; x < stamp.pixels.x; ++x) {
+            const double covered =
+                overlap(stamp.begin.x + x, begin.x, end.x) * overlap(stamp.begin.y + y, begin.y, end.y);
+            stamp.coverage.push_back(uint8_t(std::lround(OPAQUE * covered)));
+        }
+    part_.stamps.push_back(std::move(stamp));
+}
+
+void FigurePane::line(const glm::dvec2& from, const glm::dvec2& to, const glm::dvec3& color, double width)
+{
+    part_.strokes.push_back({from, to, rim_, width + 2.0 * rim_width()});
+    part_.strokes.push_back({from, to, color, width});
+}
+
+void FigurePane::write(const std::vector<Words>& words, double height)
+{
+    std::vector<std::string> texts;
+    for (const Words& each : words) texts.push_back(each.text);
+    std::vector<TextImage> images = draw_texts_(texts, height);
+    for (size_t i = 0; i < words.size(); ++i) {
+        const glm::dvec2 begin = words[i].at - words[i].anchor * glm::dvec2(images[i].pixels);
+        Stamp ink{.begin = glm::ivec2(glm::round(begin)),
+                  .pixels = images[i].pixels,
+                  .coverage = std::move(images[i].coverage),
+                  .color = ink_};
+        part_.stamps.push_back(rim_of(ink));
+        part_.stamps.push_back(std::move(ink));
+    }
+}
+
+double FigurePane::widest_of(std::span<const std::string> texts, double height) const
+{
+    double widest = 0.0;
+    for (const double width : widths_of(texts, height, draw_texts_)) widest = std::max(widest, width);
+    return widest;
+}
+
+Stamp FigurePane::rim_of(const Stamp& ink) const
+{
+    const int grown = int(rim_width());
+    Stamp rim{.begin = ink.begin - grown, .pixels = ink.pixels + 2 * grown, .coverage{}, .color = rim_};
+    rim.coverage.assign(size_t(rim.pixels.x) * size_t(rim.pixels.y), 0);
+    for (int y = 0; y < ink.pixels.y; ++y)
+        for (int x = 0; x < ink.pixels.x; ++x) {
+            const int covered = ink.coverage[size_t(x) + size_t(ink.pixels.x) * size_t(y)] * RIM / OPAQUE;
+            for (int dy = 0; covered > 0 && dy <= 2 * grown; ++dy)
+                for (int dx = 0; dx <= 2 * grown; ++dx) {
+                    uint8_t& pixel = rim.coverage[size_t(x + dx) + size_t(rim.pixels.x) * size_t(y + dy)];
+                    pixel = std::max(pixel, uint8_t(covered));
+                }
+        }
+    return rim;
+}
+
+}  // namespace shvr::ui
