@@ -27,7 +27,7 @@ struct AnnotateCommandOptions {
 class Replay {
 public:
     Replay(ui::Workbench& workbench, const AnnotateCommandOptions& given, LongWork& long_work)
-        : bench(workbench), options(given), work(long_work)
+        : bench(workbench), options(given), work(long_work), steps_before(annotator().history().undoable())
     {}
 
     ui::Workbench& bench;
@@ -38,6 +38,17 @@ public:
     StrokeResult::ByGroup taken_from{};
     int64_t kept_locked = 0, kept_painted = 0;  ///< voxels
     std::string at;                             ///< "file:line"
+    size_t steps_before = 0;                    ///< of the history, before the first line
+
+    /// States the steps that earlier lines have done and that are kept; empty if there are none.
+    std::string kept_in_words() const
+    {
+        const size_t now = annotator().history().undoable();
+        const size_t steps = now > steps_before ? now - steps_before : 0;
+        if (steps == 0) return {};
+        return sentence("; ", counted(int64_t(steps), "step"), " of earlier lines ", steps == 1 ? "is" : "are",
+                        " kept, and can be undone by {\"op\":\"undo\",\"count\":", steps, "}");
+    }
 
 private:
     /// With --verbose, prints a message about the present line.
@@ -58,8 +69,24 @@ private:
         } catch (const DeviceLost&) {
             throw;
         } catch (const Error& error) {
-            fail(at, ": ", error.what());
+            fail(at, ": ", error.what(), kept_in_words());
         }
+    }
+
+    /// Warns of groups that the operation reads and that have no voxels.
+    template <class Op>
+    void warn_of_empty(const Op& op) const
+    {
+        std::vector<int64_t> groups;
+        if constexpr (requires { op.with; })
+            groups.push_back(op.with);
+        else if constexpr (requires { op.groups; })
+            groups.assign(op.groups.begin(), op.groups.end());
+        else if constexpr (!requires { Op::PAINTS_ONLY; })
+            groups.push_back(op.group);
+        const std::array<int64_t, 256> counts = annotator().document().mask.voxels_by_group();
+        for (const int64_t group : groups)
+            if (counts[size_t(group)] == 0) warn({sentence(at, ": group ", group, " has no voxels")}, options.common);
     }
 
     /// Performs all of them or none.
@@ -67,7 +94,7 @@ private:
     {
         if (size_t(count) > there)
             fail(at, ": key count is ", count, "; expected at most ", there, ", the steps there are to ", what,
-                 "; none was taken");
+                 "; none was taken", kept_in_words());
     }
 
 public:
@@ -89,6 +116,7 @@ public:
     requires IS_GROUP_OPERATION<Op>
     void operator()(const Op& op)
     {
+        warn_of_empty(op);
         in_words([&] { bench.perform(op); });
         const OperationResult& result = in_words([&]() -> const OperationResult& {
             return bench.finish_operation([&](double fraction) {

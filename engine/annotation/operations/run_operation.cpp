@@ -4,6 +4,18 @@
 
 namespace shvr {
 
+namespace {
+
+void check_box(const OperationLimits& limits, const glm::i64vec3& size)
+{
+    if (limits.box && (glm::any(glm::greaterThanEqual(limits.box->lower, size)) ||
+                       glm::any(glm::lessThanEqual(limits.box->upper, glm::i64vec3(0)))))
+        fail("key box is ", text_of(*limits.box), "; expected a box that has voxels of the volume, which has ", size.x,
+             " x ", size.y, " x ", size.z);
+}
+
+}  // namespace
+
 OperationResult run(const GroupOperation& operation, const OperationInput& input, const Progress& progress)
 {
     return std::visit(
@@ -11,6 +23,7 @@ OperationResult run(const GroupOperation& operation, const OperationInput& input
             const OperationLimits none;
             const OperationLimits* limits = &none;
             if constexpr (requires { op.limits; }) limits = &op.limits;
+            check_box(*limits, glm::i64vec3(input.volume.size));
             MaskEdit edit(input, *limits);
             tell(progress, 0.0);
             perform(op, edit, progress);

@@ -161,10 +161,11 @@ void perform(const TraceFromMaskOp& op, MaskEdit& edit, const Progress& progress
     const auto [graph, spurs] = lines_of(found.set, op, edit, part_of(progress, 0.2, 1.0));
     TraceRecords records(graph, group, edit.input().trace);
     add_lines(graph, tolerance_of(op, edit.input().volume.spacing), records);
-    edit.note(sentence(counted(int64_t(records.nodes()), "node"), " and ",
-                       counted(int64_t(records.internodes()), "internode"), " were added; ", counted(spurs, "spur"),
-                       spurs == 1 ? " was" : " were", " left out; cavities of ", counted(found.cavities, "voxel"),
-                       found.cavities == 0 ? " (none)" : "", " were filled before"));
+    edit.note(sentence(
+        counted(int64_t(records.nodes()), "node"), " and ", counted(int64_t(records.internodes()), "internode"),
+        " were added; ", counted(spurs, "spur"), spurs == 1 ? " was" : " were", " left out",
+        found.cavities == 0 ? std::string()
+                            : sentence("; cavities of ", counted(found.cavities, "voxel"), " were filled before")));
     edit.change_trace(records.take());
 }
 
