@@ -1,5 +1,7 @@
 #include "engine/gpu/device_needs.h"
 
+#include <sys/resource.h>
+
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 
@@ -47,6 +49,14 @@ int rank(VkPhysicalDeviceType type)
     }
 }
 
+/// Under a limit of memory a driver may fail to load, which the loader does not tell from a missing one.
+std::string limit_in_words()
+{
+    rlimit limit{};
+    if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return {};
+    return sentence(", or more memory for drivers than the limit of ", limit.rlim_cur >> 20, " MiB (ulimit -v)");
+}
+
 }  // namespace
 
 std::string why_unfit(const DeviceRow& row)
@@ -57,7 +67,7 @@ std::string why_unfit(const DeviceRow& row)
 
 size_t best_device(const std::vector<DeviceRow>& rows, const std::string& wanted, const std::string& wanted_by)
 {
-    if (rows.empty()) fail(NO_DRIVER);
+    if (rows.empty()) fail(NO_DRIVER, limit_in_words());
     const bool by_index = !wanted.empty() && wanted.find_first_not_of("0123456789") == std::string::npos;
     std::optional<size_t> best, unseen, unfit;
     std::string names;

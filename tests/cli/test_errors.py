@@ -216,8 +216,16 @@ class Usage(ErrorTest):
         result = run("render", session, "-o", self.folder / "a.png",
                      environment={"VK_ICD_FILENAMES": "/none.json", "VK_DRIVER_FILES": "/none.json"})
         self.assertEqual(result.returncode, 1)
-        self.assertIn("no Vulkan device found; expected a GPU driver, or the package mesa-vulkan-drivers (lavapipe)",
+        self.assertIn("no Vulkan device found; expected a GPU driver, or the package mesa-vulkan-drivers (lavapipe)\n",
                       result.stderr)
+
+    def test_a_limit_of_memory_without_a_driver_is_named(self):
+        """Under a low one no driver loads."""
+        limited = subprocess.run(["sh", "-c", f"ulimit -v {4 << 20} && exec {SHVR} render {self.write_session()} -o "
+                                  f"{self.folder}/a.png"], capture_output=True, text=True, timeout=60,
+                                 env={**ENVIRONMENT, "VK_ICD_FILENAMES": "/none.json", "VK_DRIVER_FILES": "/none.json"})
+        self.assertIn("mesa-vulkan-drivers (lavapipe), or more memory for drivers than the limit of 4096 MiB (ulimit -v)",
+                      limited.stderr)
 
     def test_what_is_wrong_is_said_before_the_volume_is_read(self):
         session = self.write_session()
