@@ -49,7 +49,7 @@ int rank(VkPhysicalDeviceType type)
     }
 }
 
-/// Under a limit of memory a driver may fail to load, which the loader does not tell from a missing one.
+/// A limit of memory can keep a driver from loading; the loader reports no reason.
 std::string limit_in_words()
 {
     rlimit limit{};

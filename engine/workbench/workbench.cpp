@@ -107,14 +107,23 @@ bool Workbench::shows_jobs() const
 Model Workbench::model() const
 {
     const Services& all = services_;
-    return {desk_.document_model(), all.viewer.model(),
-            all.reader.model(),     all.prober.model(),
-            all.hand.model(),       all.painter.model(),
-            all.tracer.model(),     all.settings.model(),
-            all.saver.model(),      all.opener.model(),
-            all.taker.model(),      all.tasks.model(),
-            all.keeper.model(),     all.presets.model(),
-            all.window.model(),     {.recent = &recent_, .version = desk_.options.version}};
+    return {desk_.document_model(),
+            all.viewer.model(),
+            all.reader.model(),
+            all.prober.model(),
+            all.hand.model(),
+            all.painter.model(),
+            all.groups.model(),
+            all.tracer.model(),
+            all.settings.model(),
+            all.saver.model(),
+            all.opener.model(),
+            all.taker.model(),
+            all.tasks.model(),
+            all.keeper.model(),
+            all.presets.model(),
+            all.window.model(),
+            {.recent = &recent_, .version = desk_.options.version}};
 }
 
 }  // namespace shvr::ui

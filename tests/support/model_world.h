@@ -33,6 +33,7 @@ struct World {
                     {},
                     {},
                     {},
+                    {},
                     {.trace = trace},
                     {},
                     {},

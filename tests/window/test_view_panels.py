@@ -1,4 +1,4 @@
-"""Panels on what the workbench knows, by real keys: the palette, and keys that are changed."""
+"""Panels on what the workbench knows, by real keys: the palette, keys that are changed, and operations on groups."""
 import json
 import os
 import shutil
@@ -11,6 +11,7 @@ from seen import Seen
 
 DAB = {"op": "paint", "brush": "fill", "region": "ball", "path": [[32, 32, 32]], "radius": 5, "threshold": 0, "group": 3}
 PALETTE = "Find anything"
+OPERATIONS = "Operations on groups"
 
 
 class Panels(Seen):
@@ -147,6 +148,28 @@ class Panels(Seen):
         said = "\n".join(self.finish()["messages"])
         self.assertIn(f"open this page in a browser: {page}", said)
         self.assertIn(f"expected it at {page}", said)
+
+    def test_an_operation_is_previewed_and_carried_out(self):
+        self.open_scan(self.write_ball(), preferences={"hints_seen": 3})
+        x, y = self.middle()
+        self.check_probe(x, y)
+        self.check_stroke((x, y), (x + 20, y))
+        self.see("Painted ", "Status")
+        self.click_on("Edit", "##MainMenuBar")
+        self.click_on("Operations on groups...", "##Menu_00")
+        self.see("gives a group all voxels within a distance of it", OPERATIONS)
+        previewed = self.see("Grow: ", OPERATIONS)["text"]
+        self.assertIn(" painted in ", previewed)
+        self.click_on("Grow", OPERATIONS)
+        self.click_on("Shrink", "##Combo_00")
+        self.assertIn(" erased", self.see("Shrink: ", OPERATIONS)["text"])
+        self.click_on("Shrink", OPERATIONS)
+        self.click_on("Grow", "##Combo_00")
+        self.assertEqual(self.see("Grow: ", OPERATIONS)["text"], previewed)   # nothing was changed
+        self.click_on("Apply", OPERATIONS)
+        self.assertEqual(self.see("Grow: ", "Status")["text"], previewed)
+        self.press("Escape")
+        self.until(lambda: not self.seen(window=OPERATIONS), "closed window")
 
 
 if __name__ == "__main__":

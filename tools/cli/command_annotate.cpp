@@ -38,7 +38,7 @@ public:
     StrokeResult::ByGroup taken_from{};
     int64_t kept_locked = 0, kept_painted = 0;  ///< voxels
     std::string at;                             ///< "file:line"
-    size_t steps_before = 0;                    ///< of the history, before the first line
+    size_t steps_before = 0;                    ///< length of the history before the first line
 
     /// States the steps that earlier lines have done and that are kept; empty if there are none.
     std::string kept_in_words() const

@@ -95,6 +95,8 @@ void edit_menu(const Model& model, Actions& actions)
     shortcut_item("undo", model, actions);
     shortcut_item("redo", model, actions);
     ImGui::Separator();
+    shortcut_item("operate", model, actions);
+    ImGui::Separator();
     shortcut_item("preferences", model, actions, model.shows_preferences);
     ImGui::EndMenu();
 }
@@ -426,6 +428,7 @@ void menu_bar(const Model& model, Actions& actions)
     open_dialog(model, actions);
     name_and_take_dialogs(model, actions);
     task_dialogs(model, actions);
+    operations_window(model, actions);
 }
 
 void status_bar(const Model& model, const glm::uvec2& window, Actions& actions)

@@ -107,6 +107,8 @@ void task_menu(const Model& model, Actions& actions);
 bool task_dialog_waits();
 /// Shows the dialog that makes a project of that volume, from the next frame on.
 void ask_to_import(const std::filesystem::path& volume, Actions& actions);
+/// Draws the window in which an operation on groups is chosen, previewed and carried out.
+void operations_window(const Model& model, Actions& actions);
 /// Draws the dialogs for opening with options and for correcting the spacing.
 void load_dialogs(const Model& model, Actions& actions);
 void task_dialogs(const Model& model, Actions& actions);

@@ -342,6 +342,7 @@ constexpr Shortcut SHORTCUTS[] = {
     {"import_scan", WORK_KEYS, "Import as project...", Mode::tap, show_dialog<Dialog::import_scan>, {"Ctrl+I", ""}},
     {"export_work", WORK_KEYS, "Export...", Mode::tap, show_dialog<Dialog::export_work>, {"Ctrl+E", ""}},
     both("label_parts", WORK_KEYS, "Label connected parts...", Mode::tap, show_dialog<Dialog::label>, ""),
+    both("operate", WORK_KEYS, "Operations on groups...", Mode::tap, show_dialog<Dialog::operation>, ""),
     both("compare", WORK_KEYS, "Compare with a reference...", Mode::tap, show_dialog<Dialog::compare>, ""),
     both("correct_spacing", WORK_KEYS, "Correct the spacing...", Mode::tap, show_dialog<Dialog::spacing>, ""),
     {"screenshot", WORK_KEYS, "Screenshot", Mode::tap, plain<Screenshot>, {"F12", "P"}},

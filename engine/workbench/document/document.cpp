@@ -193,6 +193,7 @@ ProbeLook Document::probe_look() const
         look.ball_share = BALL_IN_SHELL;
         look.preview = previewer.shown();
     }
+    if (operation_preview) look.preview = operation_preview;
     if (session.probe.shell) {
         look.ball_share = BALL_IN_SHELL;
         look.shell = ShellLook{.threshold = *brush().threshold,

@@ -57,6 +57,7 @@ struct Document {
     Camera camera;
     Annotator annotator;
     Previewer previewer{annotator};
+    std::shared_ptr<const PaintPreview> operation_preview;  ///< is shown instead of the brush's; null: none
     ProbeMeter meter{annotator};
     Screen screen;
     Touch touch;

@@ -17,14 +17,15 @@ enum class Dialog : uint8_t {
     import_scan,
     export_work,
     label,
-    compare
+    compare,
+    operation  ///< a window: the picture can be turned while it is shown
 };
 inline constexpr Spelling<Dialog> DIALOGS[] = {
     {Dialog::none, "none"},          {Dialog::open_with_options, "open_with_options"},
     {Dialog::load, "load"},          {Dialog::save_as, "save_as"},
     {Dialog::spacing, "spacing"},    {Dialog::import_scan, "import"},
     {Dialog::export_work, "export"}, {Dialog::label, "label"},
-    {Dialog::compare, "compare"}};
+    {Dialog::compare, "compare"},    {Dialog::operation, "operation"}};
 constexpr std::span<const Spelling<Dialog>> spellings_of(Dialog)
 {
     return DIALOGS;
@@ -34,7 +35,7 @@ constexpr std::span<const Spelling<Dialog>> spellings_of(Dialog)
 constexpr bool needs_document(Dialog dialog)
 {
     return dialog == Dialog::load || dialog == Dialog::save_as || dialog == Dialog::spacing ||
-           dialog == Dialog::export_work || dialog == Dialog::label;
+           dialog == Dialog::export_work || dialog == Dialog::label || dialog == Dialog::operation;
 }
 
 }  // namespace shvr::ui

@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "engine/annotation/work/work.h"
 
@@ -16,6 +17,15 @@ struct PaintModel {
     /// Number of voxels that painting would change now; null if no preview is shown or its result is not known yet.
     std::optional<int64_t> previewed_voxels;
     std::array<int64_t, 256> voxels_by_group{};
+};
+
+/// Made by the editor of groups: what an operation would change, before it does.
+struct OperationModel {
+    std::string previewed;            ///< line of the operation (PreviewOperation); empty: none
+    std::string preview_words;        ///< what it would change, or why it cannot; empty: not known yet
+    bool is_previewing = false;       ///< the answer is being computed
+    bool is_preview_current = false;  ///< the answer is known and is about the present annotation
+    bool has_preview_failed = false;  ///< `preview_words` say why
 };
 
 /// Made by the tracer.

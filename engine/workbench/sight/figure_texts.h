@@ -22,8 +22,8 @@ struct FittedLines {
     std::vector<std::string> lines;
     bool is_shortened = false;
 };
-/// Splits a text at its line ends, and lines that are too wide at spaces, into at most `most` lines. Shortens words that
-/// are too wide, and the last line if more would follow. Without room, there are no lines.
+/// Splits a text at its line ends, and lines that are too wide at spaces, into at most `most` lines. Shortens words
+/// that are too wide, and the last line if more would follow. Without room, there are no lines.
 FittedLines lines_of(const std::string& text, double width, double height, size_t most, const TextDrawer& draw_texts);
 
 }  // namespace shvr::ui

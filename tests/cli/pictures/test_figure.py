@@ -144,7 +144,7 @@ class Figure(CliTest):
             blue = 1 - (row + 0.5) / height
             for value, expected in zip(rows[first + row][x], (1 - blue, 0, blue)):
                 self.assertAlmostEqual(value, expected, places=5)
-        # All colours at full strength, and the opacity beside them: as wide as 7 pixels at its maximum.
+        # All colours at full strength; to their right the opacity, 7 pixels wide at its maximum.
         fading = self.picture("--size", f"{side}x{side}", "--color-bar", *self.function("0"))
         for row in range(1, height):
             self.assertEqual(fading[first + row][x], rows[first + row][x])

@@ -33,10 +33,23 @@ struct AtDesk : OnDevice {
     Model model() const
     {
         const Services& all = services;
-        return {desk.document_model(), all.viewer.model(),  all.reader.model(), all.prober.model(),
-                all.hand.model(),      all.painter.model(), all.tracer.model(), all.settings.model(),
-                all.saver.model(),     all.opener.model(),  all.taker.model(),  all.tasks.model(),
-                all.keeper.model(),    all.presets.model(), all.window.model(), {}};
+        return {desk.document_model(),
+                all.viewer.model(),
+                all.reader.model(),
+                all.prober.model(),
+                all.hand.model(),
+                all.painter.model(),
+                all.groups.model(),
+                all.tracer.model(),
+                all.settings.model(),
+                all.saver.model(),
+                all.opener.model(),
+                all.taker.model(),
+                all.tasks.model(),
+                all.keeper.model(),
+                all.presets.model(),
+                all.window.model(),
+                {}};
     }
     ui::Document& document() { return *desk.document; }
     const TraceGraph& trace() { return document().annotator.document().trace; }

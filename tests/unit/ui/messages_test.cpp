@@ -41,6 +41,7 @@ struct Place {
                 {},
                 {},
                 {},
+                {},
                 {.trace = trace},
                 {.history = &history},
                 {},

@@ -40,7 +40,8 @@ void add_figure_options(CLI::App& command, FigureOptions& options)
 {
     ui::FigureElements& elements = options.elements;
     command.add_flag("--scale-bar", elements.scale_bar, "Draw a line of a rounded length, with the length");
-    command.add_flag("--color-bar", elements.color_bar, "Draw the colours of the transfer function and, beside them, its opacity, with intensities");
+    command.add_flag("--color-bar", elements.color_bar,
+                     "Draw colours and opacity of the transfer function, with intensities");
     command.add_flag("--legend", elements.legend, "Draw colours and names of the groups that are painted or traced");
     command.add_flag("--axes", elements.axes, "Draw the directions of x, y and z");
     command.add_option("--title", elements.title, "Draw a title");

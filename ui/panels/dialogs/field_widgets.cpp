@@ -1,12 +1,14 @@
 #include "ui/panels/dialogs/field_widgets.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <utility>
 
 #include <imgui/imgui.h>
 #include <imgui/imgui_internal.h>
 #include <imgui/imgui_stdlib.h>
 
+#include "engine/base/text.h"
 #include "ui/files/file_list.h"
 #include "ui/panels/dialogs/file_chooser.h"
 #include "ui/panels/field_keys.h"
@@ -108,17 +110,25 @@ public:
     void number(std::string_view name, std::optional<double>& value, const NumberRange&, const About& about) override
     {
         if (is_left_out(name)) return;
-        double shown = value.value_or(0.0);
-        if (ImGui::InputDouble(begin_row(name).c_str(), &shown, 0.0, 0.0, value ? "%.6g" : "")) value = shown;
+        char digits[32] = "";
+        if (value) std::snprintf(digits, sizeof digits, "%.6g", *value);
+        std::string text = digits;
+        if (ImGui::InputText(begin_row(name).c_str(), &text, ImGuiInputTextFlags_CharsScientific)) {
+            const std::optional<double> typed = number_of(trimmed(text));
+            if (typed || trimmed(text).empty()) value = typed;
+        }
         tell(about);
     }
     void any_whole(std::string_view name, std::optional<int64_t>& value, int64_t lower, int64_t upper,
                    const About& about) override
     {
         if (is_left_out(name)) return;
-        int64_t shown = value.value_or(lower);
-        if (ImGui::InputScalar(begin_row(name).c_str(), ImGuiDataType_S64, &shown))
-            value = std::clamp(shown, lower, upper);
+        std::string text = value ? std::to_string(*value) : std::string();
+        if (ImGui::InputText(begin_row(name).c_str(), &text, ImGuiInputTextFlags_CharsDecimal)) {
+            const std::optional<int64_t> typed = whole_of(trimmed(text));
+            if (typed) value = std::clamp(*typed, lower, upper);
+            if (trimmed(text).empty()) value.reset();  // a key that must have a value keeps its own
+        }
         tell(about);
     }
     void choice(std::string_view name, std::string& value, const std::vector<std::string_view>& names,

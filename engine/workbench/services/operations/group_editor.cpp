@@ -4,10 +4,43 @@
 #include <chrono>
 #include <thread>
 
+#include "engine/annotation/work/paint_preview.h"
 #include "engine/annotation/work/work_offsets.h"
 #include "engine/base/text.h"
+#include "engine/workbench/actions/action_rows.h"
 
 namespace shvr::ui {
+
+namespace {
+
+/// A preview is drawn from one bit for each voxel of the box around it: 16 MiB at most.
+constexpr int64_t MAX_DRAWN_VOXELS = int64_t{1} << 27;
+
+/// Returns the number of voxels in the smallest box of whole bricks around the changes.
+int64_t voxels_around(std::span<const MaskBrickChange> changes, const Mask& mask)
+{
+    if (changes.empty()) return 0;
+    VoxelBox around = mask.box_of(changes.front().brick);
+    for (const MaskBrickChange& change : changes) {
+        const VoxelBox box = mask.box_of(change.brick);
+        around = {glm::min(around.lower, box.lower), glm::max(around.upper, box.upper)};
+    }
+    const Size3 size = around.size();
+    return size.x * size.y * size.z;
+}
+
+/// Fails if the line is another action.
+GroupOperation read_operation(const std::string& line)
+{
+    return read_action(line, "preview_operation").visit([&]<class Op>(const Op& op) -> GroupOperation {
+        if constexpr (IS_GROUP_OPERATION<Op>)
+            return op;
+        else
+            fail("preview_operation: ", in_quotes(line), " is no operation on groups; expected one, such as grow");
+    });
+}
+
+}  // namespace
 
 /// A copy of the data that a job reads, made when the action arrives, so that later changes do not affect the job.
 struct GroupEditor::Snapshot {
@@ -20,37 +53,53 @@ struct GroupEditor::Snapshot {
     uint64_t memory = 0;
 };
 
+std::shared_ptr<GroupEditor::Snapshot> GroupEditor::snapshot() const
+{
+    const shvr::Document& annotation = document_->annotator.document();
+    return std::make_shared<Snapshot>(Snapshot{annotation.mask, annotation.trace, document_->volume(),
+                                               annotation.density, document_->source,
+                                               locked_groups(document_->session.groups), renderer_.host_budget()});
+}
+
+Jobs::Number GroupEditor::compute(const std::string& what, const GroupOperation& operation,
+                                  std::function<void(OperationResult)> then)
+{
+    const auto compute_it = [what, operation, then = std::move(then),
+                             from = snapshot()](ProgressReporter& reporter) -> Jobs::Completion {
+        const Progress progress = reporter.begin(what);
+        const std::shared_ptr<const VolumeSource> source =
+            needs_intensities(operation) ? with_offsets(from->source, from->density) : nullptr;
+        auto result = std::make_shared<OperationResult>(run(operation,
+                                                            {.mask = from->mask,
+                                                             .volume = from->volume,
+                                                             .source = source.get(),
+                                                             .trace = &from->trace,
+                                                             .locked = from->locked,
+                                                             .memory = from->memory},
+                                                            progress));
+        return [then, result] { then(std::move(*result)); };
+    };
+    return jobs_.start(what, compute_it);
+}
+
 void GroupEditor::begin(const GroupOperation& operation)
 {
     const Annotator& annotator = document_->annotator;
     if (annotator.stroke_is_running()) fail("a stroke is being painted; expected it to have ended");
+    end_preview();
     others_.record_settings();
-    const shvr::Document& annotation = annotator.document();
-    auto snapshot = std::make_shared<Snapshot>(
-        Snapshot{annotation.mask, annotation.trace, document_->volume(), annotation.density, document_->source,
-                 locked_groups(document_->session.groups), renderer_.host_budget()});
     is_done_ = false;
     const uint64_t revision = annotator.revision(), opening = desk_.openings;
-    running_ =
-        jobs_.start(label_of(operation),
-                    [this, operation, snapshot, revision, opening](ProgressReporter& reporter) -> Jobs::Completion {
-                        const Progress progress = reporter.begin(label_of(operation));
-                        const std::shared_ptr<const VolumeSource> source =
-                            needs_intensities(operation) ? with_offsets(snapshot->source, snapshot->density) : nullptr;
-                        auto result = std::make_shared<OperationResult>(run(operation,
-                                                                            {.mask = snapshot->mask,
-                                                                             .volume = snapshot->volume,
-                                                                             .source = source.get(),
-                                                                             .trace = &snapshot->trace,
-                                                                             .locked = snapshot->locked,
-                                                                             .memory = snapshot->memory},
-                                                                            progress));
-                        return [this, operation, revision, opening, result] {
-                            if (!document_ || desk_.openings != opening)
-                                fail(row_of(operation).title, ": the volume is no longer open");
-                            end(operation, revision, std::move(*result));
-                        };
-                    });
+    running_ = compute(label_of(operation), operation, [this, operation, revision, opening](OperationResult result) {
+        if (!document_ || desk_.openings != opening) fail(row_of(operation).title, ": the volume is no longer open");
+        end(operation, revision, std::move(result));
+    });
+}
+
+std::string GroupEditor::in_words(const GroupOperation& operation, const OperationResult& result) const
+{
+    return sentence_of(result, row_of(operation).title,
+                       [&](uint8_t group) { return group_of(document_->session.groups, group).name; });
 }
 
 void GroupEditor::end(const GroupOperation& operation, uint64_t revision, OperationResult result)
@@ -66,9 +115,69 @@ void GroupEditor::end(const GroupOperation& operation, uint64_t revision, Operat
     if (command) others_.show_changes(*command);
     last_ = std::move(result);
     is_done_ = true;
-    say(sentence_of(last_, row_of(operation).title,
-                    [&](uint8_t group) { return group_of(document_->session.groups, group).name; }),
-        command && last_.kept_locked.empty() ? Weight::done : Weight::warning);
+    say(in_words(operation, last_), command && last_.kept_locked.empty() ? Weight::done : Weight::warning);
+}
+
+// ---- Previews
+
+void GroupEditor::act(const PreviewOperation& action)
+{
+    end_preview();
+    if (action.operation.empty()) return;
+    const GroupOperation operation = read_operation(action.operation);
+    preview_ = {.line = action.operation,
+                .words = {},
+                .is_computing = true,
+                .revision = document_->annotator.revision(),
+                .opening = desk_.openings};
+    previewing_.insert(compute("Preview: " + label_of(operation), operation,
+                               [this, operation](OperationResult result) { show(operation, std::move(result)); }));
+}
+
+/// Cancels the job, too.
+void GroupEditor::end_preview()
+{
+    for (const Jobs::Number number : previewing_) jobs_.cancel(number);
+    preview_ = {};
+    if (document_) document_->operation_preview.reset();
+}
+
+void GroupEditor::show(const GroupOperation& operation, OperationResult result)
+{
+    if (!document_ || desk_.openings != preview_.opening) return;
+    const bool erases = !result.moved.empty() &&
+                        std::ranges::all_of(result.moved, [](const auto& each) { return each.first.second == 0; });
+    preview_.words = in_words(operation, result);
+    const Size3 size = document_->volume().size;
+    if (result.changes.empty()) return;
+    if (voxels_around(result.changes, document_->annotator.document().mask) > MAX_DRAWN_VOXELS) {
+        preview_.words += "; the region is too large to be drawn";
+        return;
+    }
+    const std::vector<Change> changes = as_changes(std::exchange(result.changes, {}));
+    document_->operation_preview = std::make_shared<PaintPreview>(
+        preview_of(changes, size, erases ? PaintPreview::Kind::erase : PaintPreview::Kind::group));
+}
+
+bool GroupEditor::ends_preview(const Jobs::Finished& job)
+{
+    if (previewing_.erase(job.number) == 0) return false;
+    if (job.was_cancelled) return true;  // replaced by another, or no longer wanted
+    preview_.is_computing = false;
+    preview_.has_failed = !job.failure.empty();
+    if (preview_.has_failed) preview_.words = job.failure;
+    return true;
+}
+
+OperationModel GroupEditor::model() const
+{
+    if (!document_ || desk_.openings != preview_.opening) return {};
+    return {.previewed = preview_.line,
+            .preview_words = preview_.words,
+            .is_previewing = preview_.is_computing,
+            .is_preview_current = !preview_.line.empty() && !preview_.is_computing &&
+                                  preview_.revision == document_->annotator.revision(),
+            .has_preview_failed = preview_.has_failed};
 }
 
 const OperationResult& GroupEditor::finish(const Progress& progress)

@@ -1,8 +1,15 @@
 #pragma once
 // Operations on whole groups (engine/annotation/operations): a job computes each on a copy of the mask, and its result
-// becomes one step of the history. If groups were painted meanwhile, the result no longer fits and is dropped.
+// becomes one step of the history. If groups were painted meanwhile, the result no longer fits and is dropped. A
+// preview shows the result without applying it, until another action replaces or ends it.
+
+#include <functional>
+#include <memory>
+#include <set>
+#include <string>
 
 #include "engine/annotation/operations/run_operation.h"
+#include "engine/workbench/actions/group_actions.h"
 #include "engine/workbench/desk/service.h"
 
 namespace shvr::ui {
@@ -20,12 +27,30 @@ public:
     template <class Operation>
     requires IS_GROUP_OPERATION<Operation>
     void act(const Operation& operation) { begin(GroupOperation(operation)); }
+    void act(const PreviewOperation& action);
+    /// Returns whether the job computed a preview; what it says is shown where the preview is.
+    bool ends_preview(const Jobs::Finished& job);
+    OperationModel model() const;
     /// Waits for the operation started last. Fails with the reason if its result did not become a step. An exception
     /// from `progress` cancels the operation.
     const OperationResult& finish(const Progress& progress);
 
 private:
     struct Snapshot;
+    struct Preview {
+        std::string line;
+        std::string words;  ///< the result, or why there is none
+        bool has_failed = false;
+        bool is_computing = false;
+        uint64_t revision = 0, opening = 0;  ///< state of the annotation, and the document
+    };
+    std::shared_ptr<Snapshot> snapshot() const;
+    /// Computes the operation in a job. `then`, on the main thread, takes the result.
+    Jobs::Number compute(const std::string& what, const GroupOperation& operation,
+                         std::function<void(OperationResult)> then);
+    void end_preview();
+    void show(const GroupOperation& operation, OperationResult result);
+    std::string in_words(const GroupOperation& operation, const OperationResult& result) const;
     void begin(const GroupOperation& operation);
     void end(const GroupOperation& operation, uint64_t revision, OperationResult result);
 
@@ -33,6 +58,8 @@ private:
     Jobs::Number running_ = 0;
     bool is_done_ = true;
     OperationResult last_;  ///< without its changes
+    Preview preview_;
+    std::set<Jobs::Number> previewing_;  ///< jobs that compute previews, wanted or cancelled
 };
 
 }  // namespace shvr::ui

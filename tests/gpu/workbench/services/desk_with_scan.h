@@ -108,6 +108,7 @@ struct DeskWithScan : OnDevice {
                 {},
                 {},
                 {},
+                {},
                 {.trace = desk.nothing.trace},
                 {},
                 {},

@@ -19,7 +19,7 @@ struct GroupsAlone : DeskWithScan {
     void finish_jobs()
     {
         for (const Jobs::Finished& job : desk.jobs.finish())
-            if (!job.failure.empty()) desk.say(job.failure, Weight::error);
+            if (!groups.ends_preview(job) && !job.failure.empty()) desk.say(job.failure, Weight::error);
     }
     void await_end()
     {
@@ -78,4 +78,59 @@ TEST_CASE_FIXTURE(GroupsAlone, "groups: an operation that is cancelled or fails 
     CHECK_THROWS_WITH_AS(static_cast<void>(groups.finish({})),
                          "the distance is 1e+09, 1e+09 voxels along x; expected at most 512 voxels", Error);
     CHECK(steps() == 1);
+}
+
+TEST_CASE_FIXTURE(GroupsAlone,
+                  "groups: a preview counts and shows what the operation then changes, and changes nothing")
+{
+    paint();
+    const int64_t painted = voxels(1);
+    const PreviewOperation grow{R"({"op":"grow","group":1,"distance":2})"};
+    groups.act(grow);
+    CHECK(groups.model().previewed == grow.operation);
+    CHECK(groups.model().is_previewing);
+    await_end();
+    CHECK(groups.model().is_preview_current);
+    CHECK(voxels(1) == painted);
+    CHECK(steps() == 1);
+    REQUIRE(document().operation_preview);
+    const PaintPreview preview = *document().operation_preview;
+    CHECK(document().probe_look().preview == document().operation_preview);
+    groups.act(GrowOp{.group = 1, .distance = 2.0});
+    CHECK_FALSE(document().operation_preview);
+    CHECK(preview.voxels == groups.finish({}).voxels);
+    CHECK(preview.kind == PaintPreview::Kind::group);
+
+    groups.act(grow);
+    await_end();
+    const std::string words = groups.model().preview_words;
+    CHECK(words == "Grow: " + std::to_string(document().operation_preview->voxels) + " voxels painted in group 1");
+    document().annotator.undo();
+    CHECK_FALSE(groups.model().is_preview_current);  // it is about voxels that are no longer there
+    groups.act(PreviewOperation{R"({"op":"shrink","group":1,"distance":1})"});
+    await_end();
+    CHECK(document().operation_preview->kind == PaintPreview::Kind::erase);
+    groups.act(PreviewOperation{});
+    CHECK_FALSE(document().operation_preview);
+    CHECK(groups.model().previewed.empty());
+}
+
+TEST_CASE_FIXTURE(GroupsAlone,
+                  "groups: a preview that fails says why where it would be shown, and a replaced one is gone")
+{
+    paint();
+    groups.act(PreviewOperation{R"({"op":"grow","group":1,"distance":600})"});
+    await_end();
+    CHECK(groups.model().has_preview_failed);
+    CHECK(groups.model().preview_words == "the distance is 600, 600 voxels along x; expected at most 512 voxels");
+    CHECK_FALSE(document().operation_preview);
+    CHECK_FALSE(says("the distance is 600, 600 voxels along x; expected at most 512 voxels"));
+    CHECK_THROWS_WITH_AS(groups.act(PreviewOperation{R"({"op":"undo"})"}),
+                         R"(preview_operation: "{"op":"undo"}" is no operation on groups; expected one, such as grow)",
+                         Error);
+    groups.act(PreviewOperation{R"({"op":"grow","group":1,"distance":3})"});
+    groups.act(PreviewOperation{R"({"op":"shrink","group":1,"distance":1})"});
+    await_end();
+    CHECK(groups.model().preview_words.starts_with("Shrink: "));
+    CHECK(document().operation_preview->kind == PaintPreview::Kind::erase);
 }
