@@ -11,6 +11,7 @@
 #include "engine/base/text.h"
 #include "engine/formats/zarr/source_ome_zarr.h"
 #include "engine/formats/zarr/store/remote_store.h"
+#include "engine/volume/unit.h"
 #include "tests/fuzz/support/attempt.h"
 #include "tests/fuzz/support/input_folder.h"
 #include "tests/fuzz/support/volume_input.h"
@@ -87,6 +88,11 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
         const ZarrPlace place{
             open_remote_store(RemoteFolder(ADDRESS, transport, RetryPace{.first_s = 0.0, .most_s = 0.0}))};
         source = open_ome_zarr_at(place, ADDRESS, {});
+        // open_volume makes this check after each reader.
+        const glm::dvec3 spacing = source ? source->info().spacing : glm::dvec3(1.0);
+        if (!glm::all(glm::greaterThanEqual(spacing, glm::dvec3(MIN_SPACING))) ||
+            !glm::all(glm::lessThanEqual(spacing, glm::dvec3(MAX_SPACING))))
+            fail(ADDRESS, ": has a spacing out of range");
     });
     if (is_accepted && source) try_source(*source);
     return 0;
