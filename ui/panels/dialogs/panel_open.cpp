@@ -23,7 +23,7 @@ namespace {
 FileChooser opening({.title = "Open a volume, a session or a project",
                      .verb = "Open",
                      .note = names_of_formats("and") +
-                             "; https:// and s3:// addresses of OME-Zarr. Without a header: Open with options."});
+                             "; OME-Zarr at https:// and s3://. No header: Open with options."});
 FileChooser saving({.title = "Continue under another name",
                     .verb = "Save",
                     .note = "Session (.json); mask, trace and history are written next to it. Existing files stay.",
