@@ -186,7 +186,7 @@ void Device::create_instance(const DeviceOptions& options)
                                     .enabledExtensionCount = uint32_t(extensions.size()),
                                     .ppEnabledExtensionNames = extensions.data()};
     const VkResult made = vkCreateInstance(&info, nullptr, &instance_);
-    if (made == VK_ERROR_INCOMPATIBLE_DRIVER) fail(NO_DRIVER);
+    if (made == VK_ERROR_INCOMPATIBLE_DRIVER) fail(no_driver_in_words());
     check(made, "vkCreateInstance");
     if (!debug_utils) return;
     const auto load = [&](const char* name) { return vkGetInstanceProcAddr(instance_, name); };

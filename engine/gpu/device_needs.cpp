@@ -49,15 +49,16 @@ int rank(VkPhysicalDeviceType type)
     }
 }
 
-/// A limit of memory can keep a driver from loading; the loader reports no reason.
-std::string limit_in_words()
-{
-    rlimit limit{};
-    if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return {};
-    return sentence(", or more memory for drivers than the limit of ", limit.rlim_cur >> 20, " MiB (ulimit -v)");
-}
-
 }  // namespace
+
+std::string no_driver_in_words()
+{
+    const char* const words =
+        "no Vulkan device found; expected a GPU driver, or the package mesa-vulkan-drivers (lavapipe)";
+    rlimit limit{};
+    if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return words;
+    return sentence(words, ", or more memory for drivers than the limit of ", limit.rlim_cur >> 20, " MiB (ulimit -v)");
+}
 
 std::string why_unfit(const DeviceRow& row)
 {
@@ -67,7 +68,7 @@ std::string why_unfit(const DeviceRow& row)
 
 size_t best_device(const std::vector<DeviceRow>& rows, const std::string& wanted, const std::string& wanted_by)
 {
-    if (rows.empty()) fail(NO_DRIVER, limit_in_words());
+    if (rows.empty()) fail(no_driver_in_words());
     const bool by_index = !wanted.empty() && wanted.find_first_not_of("0123456789") == std::string::npos;
     std::optional<size_t> best, unseen, unfit;
     std::string names;

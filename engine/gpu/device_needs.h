@@ -35,9 +35,9 @@ std::vector<Need> needs_of(const DeviceHas& has);
 /// the device can run them.
 std::optional<std::string> why_too_limited(const DeviceHas& has);
 
-/// The message for a system without any Vulkan driver.
-inline constexpr const char* NO_DRIVER =
-    "no Vulkan device found; expected a GPU driver, or the package mesa-vulkan-drivers (lavapipe)";
+/// Returns the message for a system without any Vulkan driver. It names a limit of the process's memory, which can keep
+/// a driver from loading; the loader reports no reason.
+std::string no_driver_in_words();
 
 /// One of the machine's devices.
 struct DeviceRow {

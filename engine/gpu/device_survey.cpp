@@ -171,13 +171,13 @@ std::vector<DeviceReport> survey_devices()
     const VkInstanceCreateInfo info{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO, .pApplicationInfo = &application};
     VkInstance instance = VK_NULL_HANDLE;
     const VkResult made = vkCreateInstance(&info, nullptr, &instance);
-    if (made == VK_ERROR_INCOMPATIBLE_DRIVER) fail(NO_DRIVER);
+    if (made == VK_ERROR_INCOMPATIBLE_DRIVER) fail(no_driver_in_words());
     check(made, "vkCreateInstance");
     const std::unique_ptr<VkInstance_T, void (*)(VkInstance)> owner(
         instance, [](VkInstance owned) { vkDestroyInstance(owned, nullptr); });
     std::vector<DeviceReport> reports;
     for (const FoundDevice& device : find_devices(instance, {})) reports.push_back(report_on(device));
-    if (reports.empty()) fail(NO_DRIVER);
+    if (reports.empty()) fail(no_driver_in_words());
     return reports;
 }
 
