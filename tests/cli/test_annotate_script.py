@@ -387,6 +387,16 @@ class OperationsOnGroups(CliTest):
         keys = self.annotate([{"op": "combine", "group": 4, "with": 3, "how": "add"}])
         self.assertEqual((keys["voxels_changed"], keys["voxels_kept_locked"]), (0, 1))
 
+    def test_a_failed_line_says_what_is_kept_and_empty_groups_are_named(self):
+        self.prepare()
+        self.assertNotIn("kept", self.refused({"op": "grow", "group": 3, "distance": 600}))
+        script = self.write_script("script.jsonl", [fill_box(3, 10, 10, 10), {"op": "grow", "group": 3, "distance": 1},
+                                                    {"op": "grow", "group": 9, "distance": 600}])
+        said = self.check("annotate", self.session, "--script", script, status=1).stderr
+        self.assertIn("script.jsonl:3: group 9 has no voxels", said)
+        self.assertIn('2 steps of earlier lines are kept, and can be undone by {"op":"undo","count":2}', said)
+        self.annotate([expect_groups(_3=7), {"op": "undo", "count": 2}, expect_groups(_3=0)])
+
     def test_lines_that_are_refused(self):
         self.prepare()
         for line, said in [

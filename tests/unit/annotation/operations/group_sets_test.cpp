@@ -67,6 +67,19 @@ TEST_CASE("operations on groups agree with their definitions, whatever limits an
     }
 }
 
+TEST_CASE("a box without voxels of the volume is refused")
+{
+    DenseGroups dense = empty_groups({20, 20, 20});
+    dense.at({3, 3, 3}) = 1;
+    const auto refused = [&](const VoxelBox& box) {
+        return failure_of(FillHolesOp{.group = 1, .limits = {.box = box}}, dense);
+    };
+    CHECK(refused({{0, 0, 20}, {5, 5, 25}}) ==
+          "key box is [0,0,20,5,5,25]; expected a box that has voxels of the volume, which has 20 x 20 x 20");
+    CHECK_FALSE(refused({{-5, 0, 0}, {0, 5, 5}}).empty());
+    CHECK(refused({{-5, 0, 19}, {1, 5, 99}}).empty());
+}
+
 TEST_CASE("islands are joined over faces only, or over edges and corners, across borders of bricks")
 {
     DenseGroups before = empty_groups({66, 66, 66});

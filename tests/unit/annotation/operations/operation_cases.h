@@ -1,6 +1,7 @@
 #pragma once
 // Masks for tests of operations on groups, and the comparison with tests/reference/group_operations.h.
 
+#include <algorithm>
 #include <random>
 #include <string>
 
@@ -133,13 +134,19 @@ inline DenseGroups random_groups(std::mt19937& random, const Size3& size, int ba
     return dense;
 }
 
+inline VoxelBox box_reaching_out_of(const Size3& size)
+{
+    return {{-3, std::min<int64_t>(5, size.y - 1), std::min<int64_t>(7, size.z - 1)},
+            {std::max<int64_t>(size.x - 9, 1), size.y + 4, 40}};
+}
+
 inline OperationLimits random_limits(std::mt19937& random, const Size3& size)
 {
     OperationLimits limits;
     if (random() % 3 == 0) limits.within = glm::dvec2(40, 180);
     if (random() % 4 == 0) limits.inside = int64_t(random() % 5);
     limits.only_unpainted = random() % 4 == 0;
-    if (random() % 3 == 0) limits.box = VoxelBox{{-3, 5, 7}, {size.x - 9, size.y + 4, 40}};
+    if (random() % 3 == 0) limits.box = box_reaching_out_of(size);
     return limits;
 }
 
