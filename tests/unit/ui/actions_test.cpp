@@ -132,6 +132,7 @@ std::vector<Action> samples()
             Prefer{R"({"layout":null,"theme":"light"})"},
             ShowPreferences{false},
             ShowDialog{Dialog::export_work},
+            PreviewOperation{R"({"op":"grow","group":3,"distance":2})"},
             FocusOn{"menu"},
             ShowFullScreen{false},
             Quit{},
