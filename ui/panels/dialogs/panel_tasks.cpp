@@ -83,6 +83,7 @@ public:
         if (begins) {
             form_ = suggested();
             is_entered_ = is_known_ = false;
+            asked_of_.clear();  // files may have come and gone since it was last shown
             ImGui::OpenPopup(Task::TITLE);
         }
         if (!is_shown_) return;
