@@ -50,8 +50,7 @@ class Export(Seen):
         self.see("Writes 3 files to " + str(self.folder), WINDOW)
         self.do("key", "n", pause_s=0)              # typed into the name, not acting behind the dialog
         self.see("n-mask.nrrd, 262 kB", WINDOW)
-        self.select_all()
-        self.do("type", "--delay", 40, "leaf", pause_s=0)   # a relative name is beside the scan
+        self.do("key", "BackSpace", "type", "--delay", 40, "leaf", pause_s=0)   # relative to the scan
         self.see("leaf-mask.nrrd, 262 kB", WINDOW)
         self.press("Return")
         self.see_no_more("Cancel", WINDOW)
