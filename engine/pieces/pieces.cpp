@@ -85,6 +85,8 @@ Pieces Pieces::of_manifest(const fs::path& manifest)
     fs::path folder = fs::absolute(manifest).lexically_normal();
     if (!folder.has_filename()) folder = folder.parent_path();
     std::error_code ignored;
+    const Pieces of_result = of_output(folder);
+    if (fs::exists(of_result.manifest_path(), ignored)) return of_result;
     return Pieces(fs::is_directory(folder, ignored) ? folder : folder.parent_path());
 }
 

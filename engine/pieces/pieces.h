@@ -39,7 +39,7 @@ class Pieces {
 public:
     /// `output`: the path of the result. Reads and writes nothing.
     static Pieces of_output(const std::filesystem::path& output);
-    /// `manifest`: OUTPUT.pieces, or the file in it.
+    /// `manifest`: OUTPUT.pieces, the file in it, or OUTPUT.
     static Pieces of_manifest(const std::filesystem::path& manifest);
 
     const std::filesystem::path& folder() const { return folder_; }

@@ -66,7 +66,7 @@ class LabelTasks(SplitTest):
         self.assertEqual((whole["components"], whole["largest_voxels"]), (1, 40))
         for of in (2, 7):
             self.tasks(of, *self.label(project, f"{of}.zarr"))
-            self.gather(self.folder / f"{of}.zarr")
+            self.check("gather", self.folder / f"{of}.zarr")  # named by its output
             names = [".zattrs"]  # holds the image's name
             found, expected = (self.folder / f"{of}.zarr", self.folder / "whole.zarr")
             self.assertEqual((found / names[0]).read_text().replace(f'"{of}.zarr"', '"whole.zarr"'),

@@ -98,9 +98,10 @@ void add_gather(CLI::App& program)
     auto options = std::make_shared<GatherCommandOptions>();
     CLI::App* command = program.add_subcommand("gather", "Joins the pieces that tasks of a command have made");
     command
-        ->add_option("MANIFEST", options->manifests,
-                     "OUTPUT.pieces, or manifest.json in it, of one job or several: the command that its tasks ran "
-                     "makes its output from their pieces, equal to that of one process bit for bit")
+        ->add_option(
+            "MANIFEST", options->manifests,
+            "OUTPUT, OUTPUT.pieces, or manifest.json in it, of one job or several: the command that its tasks ran "
+            "makes its output from their pieces, equal to that of one process bit for bit")
         ->required();
     command->add_flag("--remove", options->removes, "Delete the pieces once they are joined");
     command->add_option("--threads", options->common.threads, "Worker threads; 0: one per core")
