@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <csetjmp>
 #include <cstring>
 #include <exception>
@@ -16,6 +17,7 @@
 #include "engine/base/atomic_writer.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/base/image_tiff.h"
 #include "engine/base/text.h"
 
 namespace shvr {
@@ -121,6 +123,7 @@ public:
     {
         std::vector<png_text> chunks;
         for (const auto& [keyword, text] : texts) {
+            if (keyword == PICTURE_DPI) continue;
             if (text.size() > MAX_PICTURE_TEXT)
                 fail(name_, ": its text '", keyword, "' has ", text.size(), " bytes; expected at most ",
                      MAX_PICTURE_TEXT);
@@ -130,6 +133,8 @@ public:
             chunk.text = const_cast<char*>(text.c_str());
             chunk.itxt_length = text.size();
         }
+        constexpr double METRES_PER_INCH = 0.0254;
+        const auto per_metre = png_uint_32(std::lround(dots_per_inch_of(texts).value_or(0.0) / METRES_PER_INCH));
         png_.write = png_create_write_struct(PNG_LIBPNG_VER_STRING, this, note_error, nullptr);
         png_.info = png_.write ? png_create_info_struct(png_.write) : nullptr;
         if (!png_.info) refuse();
@@ -138,6 +143,7 @@ public:
             png_set_IHDR(png_.write, png_.info, png_uint_32(width), png_uint_32(height), 8, PNG_COLOR_TYPE_RGB_ALPHA,
                          PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_BASE, PNG_FILTER_TYPE_BASE);
             png_set_sRGB(png_.write, png_.info, PNG_sRGB_INTENT_PERCEPTUAL);
+            if (per_metre > 0) png_set_pHYs(png_.write, png_.info, per_metre, per_metre, PNG_RESOLUTION_METER);
             if (!chunks.empty()) png_set_text(png_.write, png_.info, chunks.data(), int(chunks.size()));
             png_write_info(png_.write, png_.info);
         }));
@@ -273,6 +279,13 @@ private:
 
 }  // namespace
 
+std::optional<double> dots_per_inch_of(const PictureTexts& texts)
+{
+    for (const auto& [keyword, text] : texts)
+        if (keyword == PICTURE_DPI) return number_of(text);
+    return {};
+}
+
 Image8 decode_png(Bytes file, std::string_view name)
 {
     check_file(file, name);
@@ -406,6 +419,7 @@ std::unique_ptr<ImageWriter> image_writer(const std::filesystem::path& path, int
         fail(path.string(), ": the picture is ", width, " x ", height, " pixels; expected 1 to ", MAX_IMAGE_SIDE,
              " along each side");
     if (lower_case(path.extension().string()) == ".pfm") return std::make_unique<PfmWriter>(path, width, height);
+    if (is_tiff_name(path)) return tiff_writer(path, width, height, texts);
     return std::make_unique<PngWriter>(path, width, height, texts);
 }
 

@@ -30,6 +30,11 @@ Image8 read_png(const std::filesystem::path& path);
 /// written compressed (iTXt), before the pixels. Each text has at most MAX_PICTURE_TEXT bytes.
 using PictureTexts = std::vector<std::pair<std::string, std::string>>;
 inline constexpr size_t MAX_PICTURE_TEXT = size_t{16} << 20;
+/// Keyword of the text that states the resolution in dots per inch, as a number. It is written as a pHYs chunk or as
+/// the tags of a TIFF instead of as a text.
+inline constexpr const char* PICTURE_DPI = "SHVR dots per inch";
+/// Null if the texts do not state it.
+std::optional<double> dots_per_inch_of(const PictureTexts& texts);
 /// Returns the first text with `keyword` (iTXt, zTXt or tEXt) before the pixels; null if there is none or the file is
 /// not a PNG file. Reads no pixels. Fails if the text is damaged or larger than MAX_PICTURE_TEXT.
 std::optional<std::string> read_png_text(const std::filesystem::path& path, std::string_view keyword);
@@ -52,8 +57,8 @@ public:
 protected:
     ImageWriter() = default;
 };
-/// If the name ends in .pfm, writes as `write_pfm` does, without texts; otherwise writes as `write_png` does and
-/// converts light as `to_image8` does.
+/// If the name ends in .pfm, writes as `write_pfm` does, without texts; if it ends in .tif or .tiff, a TIFF
+/// (image_tiff.h); otherwise writes as `write_png` does and converts light as `to_image8` does.
 std::unique_ptr<ImageWriter> image_writer(const std::filesystem::path& path, int64_t width, int64_t height,
                                           const PictureTexts& texts = {});
 

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "engine/base/error.h"
+#include "engine/base/image_tiff.h"
 
 namespace shvr {
 
@@ -13,6 +14,16 @@ namespace {
 const char *const SESSION_TEXT = "SHVR session", *const PROJECT_TEXT = "SHVR project",
                   *const OUTLINE_TEXT = "SHVR outline";
 const char* const CAMERA_OF_PICTURE = "picture";
+
+bool is_picture_name(const fs::path& path)
+{
+    return path.extension() == ".png" || is_tiff_name(path);
+}
+
+std::optional<std::string> text_in(const fs::path& picture, const char* keyword)
+{
+    return is_tiff_name(picture) ? read_tiff_text(picture, keyword) : read_png_text(picture, keyword);
+}
 
 fs::path folder_of(const fs::path& picture)
 {
@@ -38,20 +49,21 @@ PictureTexts texts_of_picture(Session session, const Camera& camera, const fs::p
 
 bool outlines_probe(const fs::path& picture)
 {
-    return picture.extension() != ".png" || read_png_text(picture, OUTLINE_TEXT) != "none";
+    return !is_picture_name(picture) || text_in(picture, OUTLINE_TEXT) != "none";
 }
 
 std::optional<PictureSession> session_in_picture(const fs::path& picture)
 {
     std::error_code ignored;
-    if (!fs::is_regular_file(picture, ignored) || picture.extension() != ".png") return std::nullopt;
-    const std::optional<std::string> text = read_png_text(picture, SESSION_TEXT);
+    if (!fs::is_regular_file(picture, ignored) || !is_picture_name(picture)) return std::nullopt;
+    const std::optional<std::string> text = text_in(picture, SESSION_TEXT);
+    if (!text && is_tiff_name(picture)) return std::nullopt;  // a volume
     if (!text)
         fail(picture.string(),
              ": is a picture without a session in it; expected one that shvr made, or a session, a "
              "project folder or a volume");
     PictureSession found{*text, {}};
-    if (const std::optional<std::string> project = read_png_text(picture, PROJECT_TEXT))
+    if (const std::optional<std::string> project = text_in(picture, PROJECT_TEXT))
         found.project = (folder_of(picture) / *project).lexically_normal();
     return found;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// The session inside a picture: text chunks of a .png file from which the picture can be rendered again.
+// The session inside a picture: texts in a .png or .tif file from which the picture can be rendered again.
 //
 //   "SHVR session"   the session as in its file (README.md), with the picture's size and camera; paths are relative to
 //                    the picture's folder
@@ -33,7 +33,7 @@ struct PictureSession {
     std::string text;
     std::filesystem::path project;  ///< absolute; empty: none
 };
-/// Returns null if the file is not a PNG file. Fails if it is a PNG file without a session.
+/// Returns null if the file is neither a PNG file nor a TIFF with a session. Fails if it is a PNG file without one.
 std::optional<PictureSession> session_in_picture(const std::filesystem::path& picture);
 
 }  // namespace shvr

@@ -9,6 +9,7 @@
 #include "engine/base/file.h"
 #include "engine/base/json.h"
 #include "engine/base/text.h"
+#include "engine/session/picture_session.h"
 #include "engine/session/session.h"
 
 namespace shvr {
@@ -96,6 +97,7 @@ WhatItIs content_of(const fs::path& path, const VolumeInfo* open)
     const std::string begin = first_bytes(path);
     const size_t first = begin.find_first_not_of(" \t\r\n");
     if (begin.starts_with("\x89PNG")) return {.content = FileContent::picture};
+    if (begin.starts_with("II*") && session_in_picture(path)) return {.content = FileContent::picture};
     if (first != std::string::npos && begin[first] == '{') return {.content = content_of_json(path)};
     if (begin.find("<graphml") != std::string::npos || begin.find("<rsml") != std::string::npos)
         return {.content = FileContent::trace};

@@ -67,7 +67,7 @@ Picture draw(PictureFile& file, const Opened& opened, const RenderCommandOptions
 void take_shorthands(RenderCommandOptions& options)
 {
     if (!options.size.empty()) {
-        const glm::uvec2 size = parse_size(options.size);
+        const glm::uvec2 size = take_picture_size(options.size, options.figure);
         options.common.settings.push_back(sentence("render.size=[", size.x, ",", size.y, "]"));
     }
     if (!options.transfer_function.empty()) {
@@ -138,7 +138,7 @@ void run_render(RenderCommandOptions options)
         return render_movie(
             {options.common, options.input, options.camera, options.with_session, options.figure, options.movie});
     }
-    check_output("--output", options.output, {".png", ".pfm"});
+    check_output("--output", options.output, {".png", ".tif", ".tiff", ".pfm"});
     options.output = written_path(options.output).string();
     check_output_is_not(file_of_input(options.input), options.output);
     take_shorthands(options);
@@ -166,9 +166,10 @@ void run_render(RenderCommandOptions options)
                             .outlines_probe = outlines_probe(options.input),
                             .count_work = options.common.json,
                             .progress = progress};
-    const PictureTexts texts =
-        options.with_session ? texts_of_picture(opened.session, camera, options.output, opened.project, kept_probe)
+    PictureTexts texts = options.with_session
+                             ? texts_of_picture(opened.session, camera, options.output, opened.project, kept_probe)
                              : PictureTexts();
+    add_resolution(texts, options.figure);
     std::vector<std::string> left_out;
     const PictureFile::Over over = figure_over(options.figure, opened, opened.session, camera, left_out);
     if (job.is_task()) {
@@ -207,14 +208,15 @@ void add_render(CLI::App& program)
                      "Session (.json), project folder, volume, or a picture that was made here")
         ->required();
     command->add_option("-o,--output", options->output,
-                        "Picture to write: .png, or .pfm for linear light in 32-bit floats");
-    command->add_option("--size", options->size, "Pixels, as in 512x384");
+                        "Picture to write: .png, .tif, or .pfm for linear light in 32-bit floats");
+    command->add_option("--size", options->size, "Pixels, as in 512x384, or millimetres at --dpi, as in 85x60mm");
     command->add_option("--camera", options->camera, "A camera of the session, a side (front, top, ...) or JSON");
     command->add_option(
         "--tf", options->transfer_function,
         "Transfer function: a preset (bundles, haze, heat, layers, surface), or a JSON file with its points");
-    command->add_flag("--with-session", options->with_session,
-                      "Keep the session in the .png, so that it can be rendered again, as the window's pictures do");
+    command->add_flag(
+        "--with-session", options->with_session,
+        "Keep the session in the .png or .tif, so that it can be rendered again, as the window's pictures do");
     add_figure_options(*command, options->figure);
     add_movie_options(*command, options->movie);
     add_task_option(*command, options->task);
@@ -239,6 +241,7 @@ void add_render(CLI::App& program)
         "mpirun -n N shvr render draws one picture by N processes, if shvr was built with -DSHVR_MPI=ON.\n\n"
         "Example:\n  shvr render scan.nhdr -o scan.png --size 800x600 --camera front\n"
         "  shvr render project/ -o figure.png --scale-bar --legend --title 'Bellis' --text 40,52.5,7:stem\n"
+        "  shvr render project/ -o column.tif --size 85x60mm --dpi 600 --set 'render.background=\"#ffffff00\"'\n"
         "  shvr render project/ --movie turn.webm --turntable 360 --frames 240\n"
         "  shvr render project/ --movie frames/ --keys 'front,{\"camera\":\"top\",\"cut\":{\"upper\":[99,99,50]}}'");
     command->callback([options] { run_render(*options); });

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 #include <png.h>
 #include <sys/resource.h>
+#include <tiffio.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -18,6 +19,7 @@
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/image_file.h"
+#include "engine/base/image_tiff.h"
 #include "tests/support/bounds.h"
 
 using namespace shvr;
@@ -362,6 +364,56 @@ TEST_CASE("pictures written row by row have the bytes of those written at once")
     }
     CHECK(bytes_in(folder / "whole.png") == before);
     CHECK(std::distance(std::filesystem::directory_iterator(folder), std::filesystem::directory_iterator()) == 2);
+    std::filesystem::remove_all(folder);
+}
+
+TEST_CASE("a TIFF has the pixels of the PNG, its texts and its resolution")
+{
+    const std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / ("shvr tiff test " + std::to_string(::getpid()));
+    std::filesystem::create_directory(folder);
+    const std::filesystem::path path = folder / "a.tif";
+    const PictureTexts texts{{"SHVR session", "{\"a\": \"\u00e4\"}"}, {PICTURE_DPI, "300"}, {"SHVR project", "b"}};
+    for (const bool is_opaque : {true, false}) {
+        CAPTURE(is_opaque);
+        ImageF image = noise_of_light(700, 410);  // several strips, the last one not full
+        for (size_t at = 0; at < image.rgba.size(); at += 4)
+            if (is_opaque || at < image.rgba.size() / 2) image.rgba[at + 3] = 1.0f;  // transparent only further down
+        const std::unique_ptr<ImageWriter> writer = image_writer(path, image.width, image.height, texts);
+        add_in_bands(*writer, image, 37);
+        writer->commit();
+        CHECK(read_tiff_text(path, "SHVR session") == texts[0].second);
+        CHECK(read_tiff_text(path, "SHVR project") == "b");
+        CHECK(read_tiff_text(path, PICTURE_DPI) == std::nullopt);
+        TIFF* const tiff = TIFFOpen(path.c_str(), "r");
+        REQUIRE(tiff);
+        const Image8 expected = to_image8(image);
+        uint16_t samples = 0, unit = 0;
+        float resolution = 0.0f;
+        TIFFGetField(tiff, TIFFTAG_SAMPLESPERPIXEL, &samples);
+        TIFFGetField(tiff, TIFFTAG_RESOLUTIONUNIT, &unit);
+        TIFFGetField(tiff, TIFFTAG_XRESOLUTION, &resolution);
+        CHECK(samples == (is_opaque ? 3 : 4));
+        CHECK(unit == RESUNIT_INCH);
+        CHECK(resolution == 300.0f);
+        int different = 0;
+        std::vector<uint8_t> row(size_t(TIFFScanlineSize(tiff)));
+        for (int y = 0; y < image.height; ++y) {
+            CHECK(TIFFReadScanline(tiff, row.data(), uint32_t(y)) == 1);
+            for (int x = 0; x < image.width; ++x)
+                for (int c = 0; c < samples; ++c)
+                    different += row[size_t(x * samples + c)] != expected.rgba[size_t(4 * (y * image.width + x) + c)];
+        }
+        CHECK(different == 0);
+        TIFFClose(tiff);
+    }
+    const std::vector<std::byte> whole = bytes_in(path);
+    for (size_t length = 0; length < whole.size(); length += 1 + whole.size() / 97) {
+        std::ofstream(path, std::ios::binary)
+            .write(reinterpret_cast<const char*>(whole.data()), std::streamsize(length));
+        CHECK(read_tiff_text(path, "SHVR session") == std::nullopt);
+    }
+    CHECK_THROWS_WITH_AS(image_writer(path, 40000, 40000), doctest::Contains("choose a name that ends in .png"), Error);
     std::filesystem::remove_all(folder);
 }
 

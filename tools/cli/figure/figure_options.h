@@ -14,8 +14,14 @@ namespace shvr::cli {
 struct FigureOptions {
     ui::FigureElements elements;
     std::vector<std::string> texts;  ///< as given: "X,Y,Z:TEXT"
+    double dots_per_inch = 0.0;      ///< stored in the picture; 0: not given
 };
 void add_figure_options(CLI::App& command, FigureOptions& options);
+/// Returns the size in pixels of "512x384" or "85x60mm", which chooses a resolution if none is given. Throws UsageError
+/// for anything else.
+glm::uvec2 take_picture_size(const std::string& text, FigureOptions& options);
+/// Adds the resolution to the texts of a picture, if there is one.
+void add_resolution(PictureTexts& texts, const FigureOptions& options);
 /// Reads the texts into the elements. Throws UsageError for a text that is not as expected.
 void check_figure(FigureOptions& options);
 

@@ -93,9 +93,9 @@ StatedView stated_view(const std::string& text)
         throw UsageError("--keys names an empty view; expected views separated by commas, as in front,left");
     if (text.starts_with('{')) {
         read_object(text, "--keys", view);
-    } else if (extension == ".png") {
+    } else if (extension == ".png" || extension == ".tif" || extension == ".tiff") {
         const std::optional<PictureSession> picture = session_in_picture(text);
-        if (!picture) fail(text, ": does not exist; expected a picture that holds its session");
+        if (!picture) fail(text, ": is no picture that holds its session; expected one");
         read_whole(picture->text, text, view);
     } else if (extension == ".json") {
         const std::string content = read_text(text, MAX_VIEW_BYTES);

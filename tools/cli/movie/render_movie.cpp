@@ -147,10 +147,11 @@ void Drawing::draw_files()
     for (int index = 0; index < movie_.frames(); ++index) {
         const Movie::Frame frame = movie_.frame(index);
         const std::filesystem::path path = plan_.path / frame_file(index, movie_.frames());
-        PictureFile file(path, *opened_.renderer, frame.session, frame.camera, options_of(frame, index),
-                         request_.with_session
-                             ? texts_of_picture(frame.session, frame.camera, path, opened_.project, kept_probe)
-                             : PictureTexts(),
+        PictureTexts texts = request_.with_session
+                                 ? texts_of_picture(frame.session, frame.camera, path, opened_.project, kept_probe)
+                                 : PictureTexts();
+        add_resolution(texts, request_.figure);
+        PictureFile file(path, *opened_.renderer, frame.session, frame.camera, options_of(frame, index), texts,
                          figure_over(request_.figure, opened_, frame.session, frame.camera, warnings_));
         draw_parts(file, &PictureFile::is_drawn, index);
         file.commit();
