@@ -84,10 +84,11 @@ Pieces Pieces::of_manifest(const fs::path& manifest)
 {
     fs::path folder = fs::absolute(manifest).lexically_normal();
     if (!folder.has_filename()) folder = folder.parent_path();
+    const Pieces of_result = of_output(folder), of_folder(folder);
     std::error_code ignored;
-    const Pieces of_result = of_output(folder);
     if (fs::exists(of_result.manifest_path(), ignored)) return of_result;
-    return Pieces(fs::is_directory(folder, ignored) ? folder : folder.parent_path());
+    if (fs::exists(of_folder.manifest_path(), ignored) || folder.extension() == SUFFIX) return of_folder;
+    return folder == Pieces(folder.parent_path()).manifest_path() ? Pieces(folder.parent_path()) : of_result;
 }
 
 fs::path Pieces::piece(int64_t task) const

@@ -64,6 +64,27 @@ TEST_CASE("the first task writes the manifest, and all others must agree with it
     CHECK(refusal_of(pieces, changed([](auto& m) { m.inputs = {}; })).find("nothing more") != std::string::npos);
 }
 
+TEST_CASE("a job is found by its output, its folder or its manifest; without one, the output's own manifest is missing")
+{
+    const TemporaryFolder folder;
+    const std::filesystem::path output = folder.path / "out", pieces = folder.path / "out.pieces";
+    const auto found = [](const std::filesystem::path& name) { return Pieces::of_manifest(name).folder(); };
+    for (const bool is_there : {false, true}) {
+        if (is_there) Pieces::of_output(output).begin(manifest_of(4));
+        CHECK(found(output) == pieces);
+        CHECK(found(output / "") == pieces);
+        CHECK(found(pieces) == pieces);
+        CHECK(found(pieces / "") == pieces);
+        CHECK(found(pieces / "manifest.json") == pieces);
+    }
+    // An output that was made by one process, and pieces that were renamed.
+    std::filesystem::create_directory(folder.path / "project");
+    CHECK(found(folder.path / "project") == folder.path / "project.pieces");
+    std::filesystem::rename(pieces, folder.path / "kept");
+    CHECK(found(folder.path / "kept") == folder.path / "kept");
+    CHECK(found(folder.path / "kept" / "manifest.json") == folder.path / "kept");
+}
+
 TEST_CASE("missing pieces are named, and pieces count once they are there")
 {
     const TemporaryFolder folder;
