@@ -8,7 +8,7 @@
 #include "engine/device/resident_volume.h"
 #include "engine/device/trace_surfaces.h"
 #include "engine/volume/grid.h"
-#include "engine/volume/pyramid_source.h"
+#include "engine/volume/levels/pyramid_source.h"
 
 namespace shvr {
 

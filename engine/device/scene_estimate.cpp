@@ -5,7 +5,7 @@
 
 #include "engine/base/error.h"
 #include "engine/device/scene.h"
-#include "engine/volume/pyramid_source.h"
+#include "engine/volume/levels/pyramid_source.h"
 
 namespace shvr {
 

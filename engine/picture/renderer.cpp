@@ -6,7 +6,7 @@
 
 #include "engine/base/machine/machine.h"
 #include "engine/picture/picture_job.h"
-#include "engine/volume/pyramid_source.h"
+#include "engine/volume/levels/pyramid_source.h"
 
 namespace shvr {
 

@@ -8,7 +8,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/live/annotator.h"
-#include "engine/volume/pyramid_source.h"
+#include "engine/volume/levels/pyramid_source.h"
 #include "tests/support/gpu.h"
 
 using namespace shvr;

@@ -5,7 +5,7 @@
 
 #include "engine/annotation/work/work_offsets.h"
 #include "engine/base/text.h"
-#include "engine/volume/pyramid_source.h"
+#include "engine/volume/levels/pyramid_source.h"
 #include "engine/volume/unit.h"
 #include "engine/workbench/touch/felt_relevance.h"
 #include "haptics/replay/replay.h"

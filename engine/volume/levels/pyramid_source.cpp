@@ -1,4 +1,4 @@
-#include "engine/volume/pyramid_source.h"
+#include "engine/volume/levels/pyramid_source.h"
 
 #include <algorithm>
 #include <cstring>
@@ -7,7 +7,7 @@
 #include "engine/base/error.h"
 #include "engine/volume/grid.h"
 #include "engine/volume/halving.h"
-#include "engine/volume/sparse_levels.h"
+#include "engine/volume/levels/sparse_levels.h"
 #include "engine/volume/voxel_dispatch.h"
 
 namespace shvr {

@@ -1,4 +1,4 @@
-#include "engine/volume/sparse_levels.h"
+#include "engine/volume/levels/sparse_levels.h"
 
 #include <algorithm>
 #include <array>

@@ -5,7 +5,7 @@
 
 #include "engine/base/image_metrics.h"
 #include "engine/live/annotator.h"
-#include "engine/volume/pyramid_source.h"
+#include "engine/volume/levels/pyramid_source.h"
 #include "shaders/counters.h"
 #include "tests/gpu/paging/paged_scenes.h"
 #include "tests/support/slow.h"

@@ -6,7 +6,7 @@
 
 #include "engine/live/object_query.h"
 #include "engine/live/relevance_host.h"
-#include "engine/volume/pyramid_source.h"
+#include "engine/volume/levels/pyramid_source.h"
 #include "haptics/growth.h"
 #include "tests/support/gpu.h"
 #include "tests/support/slow.h"

@@ -8,7 +8,7 @@
 
 #include "engine/annotation/work/work_offsets.h"
 #include "engine/live/relevance_host.h"
-#include "engine/volume/pyramid_source.h"
+#include "engine/volume/levels/pyramid_source.h"
 #include "haptics/growth.h"
 #include "tests/support/gpu.h"
 #include "tests/support/haptic_scenes.h"

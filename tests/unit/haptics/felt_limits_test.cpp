@@ -11,7 +11,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/live/relevance_host.h"
-#include "engine/volume/pyramid_source.h"
+#include "engine/volume/levels/pyramid_source.h"
 #include "engine/volume/voxel_numbers.h"
 #include "tests/support/volume_files.h"
 

@@ -12,7 +12,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/volume/halving.h"
-#include "engine/volume/pyramid_source.h"
+#include "engine/volume/levels/pyramid_source.h"
 #include "tests/support/bounds.h"
 #include "tests/support/volume_files.h"
 

@@ -1,4 +1,4 @@
-#include "engine/volume/pyramid_source.h"
+#include "engine/volume/levels/pyramid_source.h"
 
 #include <cmath>
 #include <limits>

@@ -10,7 +10,7 @@
 #include "engine/formats/open_volume.h"
 #include "engine/formats/zarr/zarr_chunks.h"
 #include "engine/volume/content_hash.h"
-#include "engine/volume/pyramid_source.h"
+#include "engine/volume/levels/pyramid_source.h"
 #include "tests/support/sparse_zarr.h"
 #include "tests/support/volume_files.h"
 
