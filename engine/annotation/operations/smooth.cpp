@@ -2,7 +2,8 @@
 // as a group. So a voxel only gets a group that occurs in its kernel, and becomes unpainted only if an unpainted voxel
 // is in its kernel. Weights are integers, so the result does not depend on the order of summation.
 //
-// Median: a ball slides along x, so a step costs one update per row of the ball, not per voxel. Gaussian: three
+// Median: a ball is a set of rows along x, and a row takes one subtraction of counts for each of a brick's 32 voxels in
+// a row, for each group that occurs there; so a voxel costs the ball's cross-section, not its volume. Gaussian: three
 // one-dimensional passes for each group that occurs in a brick's surroundings.
 
 #include <algorithm>
@@ -104,6 +105,13 @@ public:
         weights_[voxel] = weight;
         groups_[voxel] = group;
     }
+    /// Offers group 0 after all others.
+    void offer_unpainted(size_t voxel, uint64_t weight)
+    {
+        if (weight < weights_[voxel] || (weight == weights_[voxel] && groups_[voxel] == own_[voxel])) return;
+        weights_[voxel] = weight;
+        groups_[voxel] = 0;
+    }
     std::span<const uint8_t> groups() const { return groups_; }
 
 private:
@@ -141,35 +149,115 @@ std::vector<KernelRow> ball_of(const SmoothOp& op, const Size3& kernel, const Ma
     return rows;
 }
 
-/// Offers each group for each voxel of the core's row that begins at `start`, which is voxel `first` of `winners`.
-void offer_row(const Surroundings& around, std::span<const KernelRow> ball, const Size3& start, size_t first,
-               Winners& winners)
+/// Counts a group's voxels in stretches of rows along x, for all voxels of a brick's row at once: the number before the
+/// end of a stretch minus that before its begin. Numbers wrap at 256, which is more than a stretch has voxels.
+class RowCounts {
+public:
+    static constexpr size_t SIDE = size_t(BRICK_SIDE);
+    static_assert(2 * MAX_KERNEL + 1 < 256);
+    /// Counts for voxels 0 ... 31 of a row of the brick.
+    using Sums = std::array<uint32_t, SIDE>;
+
+    RowCounts(const Surroundings& around, int64_t reach)
+        : around_(around),
+          reach_(reach),
+          stride_(SIDE + 2 * size_t(reach) + 1),
+          before_(size_t(around.box.size().y * around.box.size().z) * stride_),
+          has_any_(size_t(around.box.size().y * around.box.size().z))
+    {}
+    /// Prepares the counts of the voxels for which `is_counted(group)` holds.
+    template <class IsCounted>
+    void prepare(const IsCounted& is_counted);
+    /// The counts in the ball around each voxel of the row of the core at (y, z).
+    Sums sums(std::span<const KernelRow> ball, int64_t y, int64_t z) const;
+
+private:
+    const Surroundings& around_;
+    int64_t reach_;
+    size_t stride_;
+    std::vector<uint8_t> before_;   ///< for each row of the box, from `reach_` voxels before the core on
+    std::vector<uint8_t> has_any_;  ///< whether the row has counted voxels
+};
+
+template <class IsCounted>
+void RowCounts::prepare(const IsCounted& is_counted)
 {
-    std::array<uint64_t, 256> counts{};
-    const VoxelBox& box = around.box;
-    for (int64_t x = start.x; x < around.core.upper.x; ++x) {
-        const bool is_first = x == start.x;
-        for (const KernelRow& row : ball) {
-            const int64_t y = start.y + row.y, z = start.z + row.z;
-            if (y < box.lower.y || y >= box.upper.y || z < box.lower.z || z >= box.upper.z) continue;
-            const uint8_t* const groups = &around.groups[around.index({box.lower.x, y, z})];
-            const int64_t from = std::max(is_first ? x - row.half : x + row.half, box.lower.x),
-                          to = std::min(x + row.half + 1, box.upper.x), gone = x - row.half - 1;
-            for (int64_t at = from; at < to; ++at) ++counts[groups[at - box.lower.x]];
-            if (!is_first && gone >= box.lower.x) --counts[groups[gone - box.lower.x]];
+    const VoxelBox& box = around_.box;
+    const int64_t extent = box.size().x, lead = box.lower.x - (around_.core.lower.x - reach_);
+    for (size_t row = 0; row < has_any_.size(); ++row) {
+        const uint8_t* const groups = &around_.groups[row * size_t(extent)];
+        uint8_t* const before = &before_[row * stride_];
+        uint8_t count = 0;
+        has_any_[row] = 0;
+        for (int64_t i = 0; i < int64_t(stride_); ++i) {
+            before[i] = count;
+            const int64_t at = i - lead;
+            if (at < 0 || at >= extent || !is_counted(groups[at])) continue;
+            ++count;
+            has_any_[row] = 1;
         }
-        for (const uint8_t group : around.held) winners.offer(first + size_t(x - start.x), group, counts[group]);
     }
 }
 
-Winners median_winners(const Surroundings& around, std::span<const KernelRow> ball)
+RowCounts::Sums RowCounts::sums(std::span<const KernelRow> ball, int64_t y, int64_t z) const
+{
+    constexpr int MAX_ROWS = 65535 / (2 * MAX_KERNEL + 1);  // then a sum of stretches still fits 16 bits
+    const VoxelBox& box = around_.box;
+    const int64_t rows = box.size().y;
+    Sums sums{};
+    std::array<uint16_t, SIDE> few{};
+    int added = 0;
+    const auto flush = [&] {
+        for (size_t i = 0; i < SIDE; ++i) sums[i] += few[i];
+        few.fill(0);
+        added = 0;
+    };
+    for (const KernelRow& row : ball) {
+        const int64_t at_y = y + row.y, at_z = z + row.z;
+        if (at_y < box.lower.y || at_y >= box.upper.y || at_z < box.lower.z || at_z >= box.upper.z) continue;
+        const auto index = size_t(at_y - box.lower.y + rows * (at_z - box.lower.z));
+        if (has_any_[index] == 0) continue;
+        const uint8_t* const begin = &before_[index * stride_ + size_t(reach_ - row.half)];
+        const uint8_t* const end = begin + 2 * row.half + 1;
+        for (size_t i = 0; i < SIDE; ++i) few[i] = uint16_t(few[i] + uint8_t(end[i] - begin[i]));
+        if (++added == MAX_ROWS) flush();
+    }
+    flush();
+    return sums;
+}
+
+Winners median_winners(const Surroundings& around, std::span<const KernelRow> ball, const Size3& kernel)
 {
     const VoxelBox& core = around.core;
     Winners winners(around);
-    size_t first = 0;
-    for (int64_t z = core.lower.z; z < core.upper.z; ++z)
-        for (int64_t y = core.lower.y; y < core.upper.y; ++y, first += size_t(core.size().x))
-            offer_row(around, ball, {core.lower.x, y, z}, first, winners);
+    RowCounts counts(around, kernel.x);
+    const auto for_each_sum = [&](const auto& visit) {
+        size_t first = 0;
+        for (int64_t z = core.lower.z; z < core.upper.z; ++z)
+            for (int64_t y = core.lower.y; y < core.upper.y; ++y, first += size_t(core.size().x)) {
+                const RowCounts::Sums sums = counts.sums(ball, y, z);
+                for (size_t x = 0; x < size_t(core.size().x); ++x) visit(first + x, sums[x]);
+            }
+    };
+    // What no group has is unpainted, which saves a pass: most bricks hold one group.
+    std::vector<uint32_t> painted(winners.groups().size());
+    for (const uint8_t group : around.held) {
+        if (group == 0) continue;
+        counts.prepare([&](uint8_t each) { return each == group; });
+        for_each_sum([&](size_t voxel, uint32_t sum) {
+            painted[voxel] += sum;
+            winners.offer(voxel, group, sum);
+        });
+    }
+    if (around.held.front() != 0) return winners;
+    if (around.box == VoxelBox{core.lower - kernel, core.upper + kernel}) {
+        uint32_t whole = 0;
+        for (const KernelRow& row : ball) whole += uint32_t(2 * row.half + 1);
+        for (size_t voxel = 0; voxel < painted.size(); ++voxel) winners.offer_unpainted(voxel, whole - painted[voxel]);
+    } else {  // the volume ends within the balls
+        counts.prepare([](uint8_t) { return true; });
+        for_each_sum([&](size_t voxel, uint32_t sum) { winners.offer_unpainted(voxel, sum - painted[voxel]); });
+    }
     return winners;
 }
 
@@ -250,8 +338,8 @@ void perform(const SmoothOp& op, MaskEdit& edit, const Progress& progress)
         const Surroundings around = surroundings_of(brick, kernel, edit);
         const auto is_chosen = [&](uint8_t group) { return chosen[group]; };
         if (around.held.size() == 1 || std::ranges::none_of(around.held, is_chosen)) return;
-        const Winners winners =
-            op.method == SmoothOp::Method::median ? median_winners(around, ball) : gaussian_winners(around, along);
+        const Winners winners = op.method == SmoothOp::Method::median ? median_winners(around, ball, kernel)
+                                                                      : gaussian_winners(around, along);
         MaskBrick wanted = edit.read(brick);
         const Size3 extent = around.core.size();
         for (size_t i = 0; i < winners.groups().size(); ++i) {
