@@ -50,6 +50,18 @@ class Remote(Seen):
         self.see(address, "Open a volume")
         self.check_key("Enter", "open")
 
+    def annotate_without_a_copy(self):
+        """Returns the session on this machine that names the address of the open volume."""
+        session = self.folder / "mine.json"
+        self.click_on("Annotate without a copy...", "On another machine")
+        self.see_at_rest("Hidden")
+        self.do("key", "ctrl+a", "type", "--delay", 30, session, pause_s=0)
+        self.see(str(session), "Annotate a volume")
+        self.check_key("Enter", "work_on_copy")
+        self.wait_for_window("x.* - SHVR$")
+        self.see_sharp()
+        return session
+
     def see_sharp(self):
         self.until(lambda: self.frame()["sharp"], "sharp picture")
 
@@ -102,14 +114,7 @@ class View(Remote):
         server = self.serve()
         self.look(server.address("x.zarr"))
         self.see_sharp()
-        session = self.folder / "mine.json"
-        self.click_on("Annotate without a copy...", "On another machine")
-        self.see_at_rest("Hidden")
-        self.do("key", "ctrl+a", "type", "--delay", 30, session, pause_s=0)
-        self.see(str(session), "Annotate a volume")
-        self.check_key("Enter", "work_on_copy")
-        self.wait_for_window("x.* - SHVR$")
-        self.see_sharp()
+        session = self.annotate_without_a_copy()
         self.assertFalse(self.seen("Read only"))
         self.finish()
         self.assertEqual(json.loads(session.read_text())["volume"]["path"], server.address("x.zarr"))
@@ -187,14 +192,7 @@ class View(Remote):
         self.see(f"Open {server.address('x.zarr')}", "Find anything")
         self.check_key("Enter", "open")
         self.see_sharp()
-        session = self.folder / "mine.json"
-        self.click_on("Annotate without a copy...", "On another machine")
-        self.see_at_rest("Hidden")
-        self.do("key", "ctrl+a", "type", "--delay", 30, session, pause_s=0)
-        self.see(str(session), "Annotate a volume")
-        self.check_key("Enter", "work_on_copy")
-        self.wait_for_window("x.* - SHVR$")
-        self.see_sharp()
+        self.annotate_without_a_copy()
         self.words.unlink()   # what is on the screen, as typed
         report = self.finish()
         self.words.unlink(missing_ok=True)
