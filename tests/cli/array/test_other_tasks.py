@@ -1,8 +1,8 @@
-"""shvr golden run, export and study --task: what several processes make and gather joins equals that of one."""
+"""shvr golden run, export, study and bench --task: what several processes make and gather joins equals that of one."""
 import json
 import unittest
 
-from harness import ENVIRONMENT, Volume
+from harness import ENVIRONMENT, IS_SLOW, Volume
 from tasks import SplitTest, files_below
 
 
@@ -10,6 +10,16 @@ def without_times(results):
     for row in results["goldens"]:
         row["seconds"] = 0
     return results
+
+
+def timeless(value):
+    """Results of bench without times, and without what follows from them."""
+    if isinstance(value, list):
+        return [timeless(each) for each in value]
+    if not isinstance(value, dict):
+        return value
+    return {key: timeless(each) for key, each in value.items()
+            if not key.endswith(("_ms", "_seconds")) and key not in ("load", "on_front")}
 
 
 class OtherTasks(SplitTest):
@@ -80,6 +90,33 @@ class OtherTasks(SplitTest):
         self.assertEqual((told["result"]["made"], told["result"]["missing"]), (0, 0))
         for name in ("rows.csv", "report.html"):
             self.assert_equal_files(self.folder / "parts" / name, self.folder / "whole" / name)
+
+    def test_scenes_of_a_bench_are_measured_by_several_processes(self):
+        scenes = ["uint16", "fog"] if IS_SLOW else ["fog"]  # of one scene, the second task makes an empty piece
+
+        def bench(name):
+            return ["bench", "--scenes", ",".join(scenes), "--quick", "--side", 16, "--size", "8,8", "--rounds", 1, "--peer",
+                    "none", "-o", self.folder / name]
+        whole, parts = self.folder / "whole", self.folder / "parts"
+        self.check_json(*bench("whole"))
+        self.tasks(2, *bench("parts"), order=(1,))
+        self.assertEqual(self.gather(parts, status=1)["missing"], ["0/2"])
+        self.assertFalse((parts / "bench.json").exists())
+        self.tasks(2, *bench("parts"), order=(0,))
+        told = self.gather(parts)
+        self.assertEqual((told["missing"], told["result"]["bench"]), ([], str(parts / "bench.json")))
+        self.assertEqual(sorted(files_below(parts)), sorted(files_below(whole)))
+        found, expected = (json.loads((folder / "bench.json").read_text()) for folder in (parts, whole))
+        self.assertEqual([scene["name"] for scene in expected["scenes"]], scenes)
+        self.assertEqual(timeless(found), timeless(expected))
+
+    def test_what_no_task_has_made_is_named_by_its_own_manifest(self):
+        for given, manifest in [("no.zarr", "no.zarr.pieces/manifest.json"),
+                                ("no.zarr.pieces", "no.zarr.pieces/manifest.json"),
+                                ("no.zarr.pieces/manifest.json", "no.zarr.pieces/manifest.json"),
+                                ("", self.folder.name + ".pieces/manifest.json")]:
+            said = self.check_refused("gather", self.folder / given, status=1, says=["is missing", "--task 0/N"])
+            self.assertIn(f"/{manifest}: ", said)
 
 
 if __name__ == "__main__":
