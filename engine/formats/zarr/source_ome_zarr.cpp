@@ -456,6 +456,21 @@ std::unique_ptr<VolumeSource> open_group(const ZarrPlace& place, const ZarrNode&
          "; expected a zipped OME-Zarr: zip the content of its folder, not the folder");
 }
 
+/// Says why there is no OME-Zarr at an address, and what to do if a file seems to be there.
+[[noreturn]] void refuse_address(const fs::path& path)
+{
+    for (const fs::path& part : path) {
+        const std::string extension = lower_case(part.extension().string());
+        if (extension == ".ozx" || extension == ".zip")
+            fail(path.string(),
+                 ": archives are not read over a network; expected the address of an OME-Zarr folder: unpack the "
+                 "archive on the server, or download it and open the file");
+    }
+    fail(path.string(),
+         ": has no zarr.json, .zattrs, .zgroup or .zarray; expected the address of an OME-Zarr, the only format that "
+         "is read over a network: download other files, and open them here");
+}
+
 }  // namespace
 
 std::unique_ptr<VolumeSource> open_ome_zarr(const fs::path& path, const OpenOptions& options)
@@ -469,8 +484,7 @@ std::unique_ptr<VolumeSource> open_ome_zarr_at(const ZarrPlace& place, const fs:
     const std::optional<ZarrNode> node = read_zarr_node(place);
     std::error_code ignored;
     if (!node && fs::is_directory(path, ignored)) return nullptr;
-    if (!node && place.store->is_remote())
-        fail(path.string(), ": has no zarr.json, .zattrs, .zgroup or .zarray; expected the address of an OME-Zarr");
+    if (!node && place.store->is_remote()) refuse_address(path);
     if (!node) refuse_archive(path, place);
     if (node->is_array) return open_array(place, node->version, options);
     check_ome_version(*node);

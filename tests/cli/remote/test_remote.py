@@ -107,6 +107,9 @@ class Equal(RemoteTest):
         server = self.serve()
         self.check_refused("info", server.address("y.zarr"), says=["y.zarr: has no zarr.json, .zattrs"])
         self.check_refused("info", server.address("x.zarr") + "/0/0", says=["has no zarr.json"])
+        (self.folder / "served/x.ozx").touch()
+        for name in ("x.ozx", "x.ozx/0", "x.zip"):
+            self.check_refused("info", server.address(name), says=[f"{name}: archives are not read", "download it"])
         said = self.check_refused("annotate", server.address("x.zarr"), "--script", self.write_script("s", []),
                                   says=["annotation is kept only in projects", '"x"'])
         self.assertNotIn("http:/1", said)
