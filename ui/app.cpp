@@ -246,6 +246,16 @@ double App::time_to_wait() const
 
 namespace {
 
+/// Returns whether the key has to wait for a frame, so that the interface neither ignores text of the last frame (as it
+/// does while Ctrl or Alt is down) nor takes two presses of the key for one.
+bool comes_too_early(const KeyEvent& event, const Window& window)
+{
+    if (!event.pressed || event.repeated) return false;
+    const bool is_shift = event.key == GLFW_KEY_LEFT_SHIFT || event.key == GLFW_KEY_RIGHT_SHIFT;
+    if (is_modifier(event)) return !is_shift && !ImGui::GetIO().InputQueueCharacters.empty();
+    return !types_text(event) && window.was_just_pressed(event.key);
+}
+
 /// Returns whether another motion with no button held follows: of such motions, only the last position matters.
 bool is_overtaken(const std::vector<InputEvent>& events, const InputEvent& event)
 {
@@ -277,8 +287,7 @@ bool App::ui_has_key(const KeyEvent& event) const
 {
     if (field_has_keys() || choosers_have_keys() || bench_->model().shows_palette) return true;
     // Keys typed while a dialog is shown are no shortcuts: the scene behind the dialog must not change.
-    const bool is_typed = (event.mods & (GLFW_MOD_CONTROL | GLFW_MOD_ALT)) == 0 && event.key < GLFW_KEY_ESCAPE;
-    if (dialog_is_shown() && is_typed) return true;
+    if (dialog_is_shown() && types_text(event)) return true;
     if (!bench_->model().awaits_key.empty()) return false;  // any key may be the one to be bound
     return panels_have_keyboard() && moves_in_panels(event);
 }
@@ -291,11 +300,13 @@ bool App::panels_have_keyboard() const
            bench_->model().shows_palette;
 }
 
-/// After a key that may have opened or closed a field, holds back input until a frame shows which widget gets the keys.
+/// After input whose effect the next event depends on (`decides`), holds back the rest until a frame shows that effect.
 std::vector<InputEvent> App::events_in_turn(double timeout_s)
 {
     for (InputEvent& event : window_.wait_events(timeout_s)) held_back_.push_back(std::move(event));
-    const bool awaits_frame = held_back_in_frame_ == ImGui::GetFrameCount() && !undrawable_since_s_;
+    constexpr double HIDDEN_S = 1.0;  // a frame that waits longer is that of a hidden window, which may never be drawn
+    const bool is_hidden = undrawable_since_s_ && window_.now_s() - *undrawable_since_s_ > HIDDEN_S;
+    const bool awaits_frame = held_back_in_frame_ == ImGui::GetFrameCount() && !is_hidden;
     return awaits_frame ? std::vector<InputEvent>() : std::exchange(held_back_, {});
 }
 
@@ -307,14 +318,18 @@ void App::hold_back(std::vector<InputEvent>& events, size_t first)
     events.erase(begin, events.end());
 }
 
-/// Returns whether a key may open or close a field: Enter or Escape in the interface, or a shortcut that shows a field.
-bool App::decides_who_has_keys(const KeyEvent& event, bool is_for_ui) const
+/// Returns whether the interface must apply this event in a frame of its own before it gets the next one: a key that
+/// opens or closes a field, edits text or moves the focus, or a click that may give the keyboard to another field. Within
+/// one frame, Dear ImGui applies text before keys.
+bool App::decides(const InputEvent& event, bool is_for_ui) const
 {
-    if (!event.pressed) return false;
-    const bool ends = event.key == GLFW_KEY_ENTER || event.key == GLFW_KEY_KP_ENTER || event.key == GLFW_KEY_ESCAPE;
-    return (ends && is_for_ui) || std::ranges::any_of(actions_, [](const Action& action) {
-               return action.is<AskOpen>() || action.is<ShowPalette>() || action.is<ShowDialog>();
-           });
+    if (std::holds_alternative<ButtonEvent>(event.what)) return is_for_ui || field_has_keys();
+    const auto* const key = std::get_if<KeyEvent>(&event.what);
+    if (!key || !key->pressed || key->repeated) return false;
+    const auto shows_field = [](const Action& action) {
+        return action.is<AskOpen>() || action.is<ShowPalette>() || action.is<ShowDialog>();
+    };
+    return (is_for_ui && !is_modifier(*key) && !types_text(*key)) || std::ranges::any_of(actions_, shows_field);
 }
 
 void App::handle_events(double timeout_s)
@@ -324,21 +339,25 @@ void App::handle_events(double timeout_s)
         const InputEvent& event = events[i];
         keep_drawing(AFTERGLOW_S);
         const auto* const key = std::get_if<KeyEvent>(&event.what);
-        if (key || std::holds_alternative<ButtonEvent>(event.what)) report_.asked(event.time_s);
-        const bool is_for_ui = key && ui_has_key(*key);
+        if (key && comes_too_early(*key, window_)) {
+            hold_back(events, i);
+            break;
+        }
+        const bool is_button = std::holds_alternative<ButtonEvent>(event.what);
+        if (key || is_button) report_.asked(event.time_s);
+        const bool is_for_ui = key ? ui_has_key(*key) : is_button && ui_has_mouse(event);
         if (!key || !key->pressed || panels_have_keyboard() || !moves_focus(*key)) window_.tell_ui(event);
-        bool decides = false;
         if (key) {
             keyboard_.handle(*key, model(), is_for_ui, actions_);
-            decides = decides_who_has_keys(*key, is_for_ui);
-            if (decides && !is_for_ui) ImGui::GetIO().ClearInputCharacters();  // those were of shortcuts
-            if (leaves_panels(*key)) leave_panels();
         } else if (bench_->model().is_painting || !is_overtaken(events, event)) {
             viewport_.handle(event, model(), ui_has_mouse(event), actions_);
         }
+        const bool waits = decides(event, is_for_ui);
+        if (key && waits && !is_for_ui) ImGui::GetIO().ClearInputCharacters();  // those were of shortcuts
+        if (key && leaves_panels(*key)) leave_panels();
         bench_->set_pointer(viewport_.pointer());
         apply_all();  // the next event may depend on an action's effect, such as a new probe position or selection
-        if (decides) hold_back(events, i + 1);
+        if (waits) hold_back(events, i + 1);
     }
     if (window_.has_clicks()) keep_drawing(AFTERGLOW_S);
     viewport_.wait(window_.now_s(), actions_);

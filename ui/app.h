@@ -72,7 +72,7 @@ private:
     bool panels_have_keyboard() const;
     std::vector<InputEvent> events_in_turn(double timeout_s);
     void hold_back(std::vector<InputEvent>& events, size_t first);
-    bool decides_who_has_keys(const KeyEvent& event, bool is_for_ui) const;
+    bool decides(const InputEvent& event, bool is_for_ui) const;
     bool closes();
     bool refuses_to_close(const std::string& why);
 

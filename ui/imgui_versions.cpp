@@ -119,13 +119,12 @@ void tell_imgui_buttons(GLFWwindow* window, const MouseFeed::Frame& frame)
         io.AddMouseButtonEvent(button, frame.down[size_t(button)]);
 }
 
-void begin_imgui_frame(GLFWwindow* window, const std::vector<int>& pressed, int mods)
+void begin_imgui_frame(GLFWwindow* window, const FrameKeys& keys, int mods)
 {
-    for (const int key : pressed) tell_imgui_key(window, key, true, mods);
+    for (const int key : keys.pressed) tell_imgui_key(window, key, true, mods);
     ImGui::GetIO().AddKeyEvent(ALT, false);  // otherwise releasing Alt, as after Alt + drag, would move to the menu
     ImGui::NewFrame();
-    for (const int key : pressed)
-        if (glfwGetKey(window, key) != GLFW_PRESS) tell_imgui_key(window, key, false, mods);
+    for (const int key : keys.released) tell_imgui_key(window, key, false, mods);
 }
 
 #else
@@ -151,13 +150,13 @@ void tell_imgui_buttons(GLFWwindow*, const MouseFeed::Frame& frame)
     allow_double_click(frame.is_double);
 }
 
-void begin_imgui_frame(GLFWwindow* window, const std::vector<int>& pressed, int)
+void begin_imgui_frame(GLFWwindow*, const FrameKeys& keys, int)
 {
     bool(&down)[512] = ImGui::GetIO().KeysDown;
-    for (const int key : pressed) down[key] = true;
+    for (const int key : keys.pressed) down[key] = true;
     ImGui::GetIO().KeyAlt = false;  // otherwise releasing Alt, as after Alt + drag, would move to the menu
     ImGui::NewFrame();
-    for (const int key : pressed) down[key] = glfwGetKey(window, key) == GLFW_PRESS;
+    for (const int key : keys.released) down[key] = false;
 }
 
 #endif

@@ -27,9 +27,19 @@ void tell_imgui_key(GLFWwindow* window, int key, bool pressed, int mods);
 void tell_imgui_character(GLFWwindow* window, unsigned character);
 /// Reports the state of the buttons, and the pointer's position at a change. Call after ImGui_ImplGlfw_NewFrame.
 void tell_imgui_buttons(GLFWwindow* window, const MouseFeed::Frame& frame);
-/// Calls ImGui::NewFrame with the keys `pressed` down: keys pressed since the previous frame, even if released again.
-/// `mods`: modifiers that are held now.
-void begin_imgui_frame(GLFWwindow* window, const std::vector<int>& pressed, int mods);
+/// The keys that were reported as pressed or released since the previous frame.
+struct FrameKeys {
+    std::vector<int> pressed;
+    std::vector<int> released;  ///< and not pressed again
+
+    void add(int key, bool is_pressed)
+    {
+        std::erase(released, key);
+        (is_pressed ? pressed : released).push_back(key);
+    }
+};
+/// Calls ImGui::NewFrame with the pressed keys down, even if they were released again. `mods`: modifiers held now.
+void begin_imgui_frame(GLFWwindow* window, const FrameKeys& keys, int mods);
 
 /// Calls ImGui_ImplVulkan_Init for drawing in the render pass `pass`.
 void init_imgui_vulkan(ImGui_ImplVulkan_InitInfo info, VkRenderPass pass);

@@ -165,6 +165,16 @@ bool moves_focus(const KeyEvent& event)
     return std::ranges::find(KEYS, event.key) != std::end(KEYS);
 }
 
+bool types_text(const KeyEvent& event)
+{
+    return event.key < GLFW_KEY_ESCAPE && !(event.mods & (GLFW_MOD_CONTROL | GLFW_MOD_ALT));
+}
+
+bool is_modifier(const KeyEvent& event)
+{
+    return event.key >= GLFW_KEY_LEFT_SHIFT && event.key <= GLFW_KEY_RIGHT_SUPER;
+}
+
 bool leaves_panels(const KeyEvent& event)
 {
     return event.pressed && !event.repeated && event.key == GLFW_KEY_ESCAPE;

@@ -31,6 +31,10 @@ private:
 bool moves_in_panels(const KeyEvent& event);
 /// Returns whether a press of this key over the picture would make Dear ImGui move the focus into a panel (only Tab).
 bool moves_focus(const KeyEvent& event);
+/// Returns whether the key enters a character, without Ctrl and Alt.
+bool types_text(const KeyEvent& event);
+/// Returns whether the key is Shift, Ctrl, Alt or Super.
+bool is_modifier(const KeyEvent& event);
 /// Returns whether the key returns the keyboard from the panels to the picture.
 bool leaves_panels(const KeyEvent& event);
 

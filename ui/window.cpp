@@ -1,5 +1,6 @@
 #include "ui/window.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <GLFW/glfw3.h>
@@ -58,7 +59,8 @@ struct Window::Input {
     GLFWwindow* window = nullptr;
     std::vector<InputEvent> events;
     glm::ivec2 place{0}, size{0};  ///< position and size of the window before it became full screen
-    std::vector<int> pressed;      ///< keys, since the last frame
+    FrameKeys keys;                ///< for the next frame of the interface
+    FrameKeys last_keys;           ///< of its last frame
     MouseFeed mouse;
     double asked_s = 0.0, answered_s = 0.0;  ///< when the last wait for events began and ended
 
@@ -281,7 +283,7 @@ void Window::tell_ui(const InputEvent& event)
     if (const auto* text = std::get_if<TextEvent>(&event.what)) tell_imgui_character(input_->window, text->character);
     const auto* const key = std::get_if<KeyEvent>(&event.what);
     if (!key || key->repeated || key->key < 0) return;
-    if (key->pressed) input_->pressed.push_back(key->key);
+    input_->keys.add(key->key, key->pressed);
     tell_imgui_key(input_->window, key->key, key->pressed, key->mods);
 }
 
@@ -294,6 +296,11 @@ void Window::renew_fonts()
 {
     if (std::exchange(input_->frame_is_open, false)) ImGui::EndFrame();
     if (swapchain_) swapchain_->renew_fonts();
+}
+
+bool Window::was_just_pressed(int key) const
+{
+    return std::ranges::find(input_->last_keys.pressed, key) != input_->last_keys.pressed.end();
 }
 
 bool Window::has_clicks() const
@@ -313,7 +320,8 @@ void Window::begin_ui()
     ImGui_ImplGlfw_NewFrame();
     tell_imgui_buttons(input_->window, input_->mouse.next());  // one button change per frame, at its own position
     // A key that was pressed and released during the last frame, which may have been long, still counts as pressed.
-    begin_imgui_frame(input_->window, std::exchange(input_->pressed, {}), Input::mods(input_->window));
+    input_->last_keys = std::exchange(input_->keys, {});
+    begin_imgui_frame(input_->window, input_->last_keys, Input::mods(input_->window));
 }
 
 bool Window::present(const std::vector<View::Layer>& layers, const glm::uvec2& origin,

@@ -50,8 +50,14 @@ class Export(Seen):
         self.see("Writes 3 files to " + str(self.folder), WINDOW)
         self.do("key", "n", pause_s=0)              # typed into the name, not acting behind the dialog
         self.see("n-mask.nrrd, 262 kB", WINDOW)
-        self.do("key", "BackSpace", "type", "--delay", 40, "leaf", pause_s=0)   # relative to the scan
-        self.see("leaf-mask.nrrd, 262 kB", WINDOW)
+        # Keys and text that arrive during one long frame take effect in their order.
+        self.at_once("key", "BackSpace", "type", "--delay", 2, "bean")
+        self.see("bean-mask.nrrd, 262 kB", WINDOW)
+        self.at_once("key", "ctrl+a", "type", "--args", 1, "--delay", 2, "stalk", "key", "--delay", 2, "BackSpace",
+                     "BackSpace", "Home", "Delete", "e")
+        self.see("eta-mask.nrrd, 262 kB", WINDOW)
+        self.at_once("key", "ctrl+a", "type", "--delay", 2, "leaf")
+        self.see("leaf-mask.nrrd, 262 kB", WINDOW)   # a relative name is beside the scan
         self.press("Return")
         self.see_no_more("Cancel", WINDOW)
         self.see("Exported leaf-trace.graphml, leaf-mask.nrrd and leaf-measures.csv to ", "Status")
