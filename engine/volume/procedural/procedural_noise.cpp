@@ -141,7 +141,7 @@ public:
         const std::array<Place, 3> places = {place(voxel.x), place(voxel.y), place(voxel.z)};
         glm::dvec3 sum(0.0);
         for (int i = 0; i < 8; ++i) {
-            glm::dvec3 weight, slope;
+            glm::dvec3 weight(0.0), slope(0.0);
             for (int axis = 0; axis < 3; ++axis) {
                 const double fraction = places[size_t(axis)].fraction;
                 const bool is_upper = (i >> axis & 1) != 0;
