@@ -357,6 +357,21 @@ class OperationsOnGroups(CliTest):
                       self.refused({"op": "fill_between", "group": 7, "axis": "w"}))
         self.annotate([{"op": "fill_between", "group": 9}, expect_groups(_7=36, _9=0)])   # is empty
 
+    def test_lines_of_growing_from_seeds(self):
+        self.prepare()
+        box = [8, 8, 8, 11, 13, 13]
+        self.annotate([
+            fill_box(3, 10, 10, 10), {"op": "grow_seeds", "box": box}, expect_groups(_3=75), {"op": "undo"},
+            {"op": "grow_seeds", "margin": 1, "on": "inverted"}, expect_groups(_3=27), {"op": "undo"},
+            fill_box(4, 10, 12, 12),
+            {"op": "grow_seeds", "groups": [4], "box": box, "only_unpainted": True}, expect_groups(_3=1, _4=74),
+            {"op": "undo"}, {"op": "grow_seeds", "groups": [4], "box": box}, expect_groups(_3=0, _4=75),
+            {"op": "undo"}, {"op": "grow_seeds", "box": box, "within": [300, 400]}, expect_groups(_3=1, _4=1)])
+        self.assertIn("no group of [9] that is not locked has voxels; expected some as seeds",
+                      self.refused({"op": "grow_seeds", "groups": [9]}))
+        self.assertIn('key on is "fog"; expected one of "gradient", "intensity", "inverted"',
+                      self.refused({"op": "grow_seeds", "on": "fog"}))
+
     def test_mask_from_trace(self):
         self.prepare()
         self.annotate([

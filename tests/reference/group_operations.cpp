@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <stdexcept>
 
 namespace shvr::reference {
@@ -240,6 +242,75 @@ DenseGroups wanted_by(const FillBetweenOp& op, DenseGroups dense, const DenseVol
         if (before_it + share * (after_it - before_it) <= 1e-9 * (std::abs(before_it) + std::abs(after_it)))
             dense.at(voxel) = uint8_t(op.group);
     });
+    return dense;
+}
+
+double squared_gradient(const DenseGroups& dense, const DenseVolume& volume, const Size3& voxel)
+{
+    const auto value = [&](const Size3& at) {
+        return volume.intensities[size_t(at.x + dense.size.x * (at.y + dense.size.y * at.z))];
+    };
+    double sum = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+        Size3 step(0);
+        step[axis] = 1;
+        const bool has_before = dense.contains(voxel - step), has_after = dense.contains(voxel + step);
+        if (!has_before && !has_after) continue;
+        const double rise = value(has_after ? voxel + step : voxel) - value(has_before ? voxel - step : voxel);
+        const double slope = rise / (double(int(has_before) + int(has_after)) * volume.spacing[axis]);
+        sum += slope * slope;
+    }
+    return sum;
+}
+
+DenseGroups wanted_by(const GrowSeedsOp& op, DenseGroups dense, const DenseVolume& volume)
+{
+    const DenseGroups before = dense;
+    const auto is_seed = [&](uint8_t group) {
+        const bool is_chosen = op.groups.empty() ? op.limits.inside != group : std::ranges::count(op.groups, group) > 0;
+        return group != 0 && is_chosen && !volume.locked[group];
+    };
+    const auto is_in_box = [&](const Size3& voxel, const std::optional<VoxelBox>& box) {
+        return !box ||
+               (glm::all(glm::greaterThanEqual(voxel, box->lower)) && glm::all(glm::lessThan(voxel, box->upper)));
+    };
+    std::vector<Size3> seeds;
+    VoxelBox near{Size3(1 << 30), Size3(-(1 << 30))};
+    for_each_voxel(dense.size, [&](const Size3& voxel) {
+        if (!is_seed(before.at(voxel)) || !is_in_box(voxel, op.limits.box)) return;
+        seeds.push_back(voxel);
+        near = {glm::min(near.lower, voxel), glm::max(near.upper, voxel + int64_t{1})};
+    });
+    const int64_t margin = op.margin.value_or(op.limits.box ? 1 << 30 : GrowSeedsOp::MARGIN);
+    near = {near.lower - margin, near.upper + margin};
+    std::vector<uint8_t> is_reached(dense.groups.size());
+    std::multimap<double, Size3> frontier;  // keeps the order of equal costs
+    const auto reach_from = [&](const Size3& voxel) {
+        for (const Size3& step :
+             {Size3(0, 0, -1), Size3(0, -1, 0), Size3(-1, 0, 0), Size3(1, 0, 0), Size3(0, 1, 0), Size3(0, 0, 1)}) {
+            const Size3 next = voxel + step;
+            if (!dense.contains(next) || !is_in_box(next, op.limits.box) || !is_in_box(next, near)) continue;
+            const auto index = size_t(next.x + dense.size.x * (next.y + dense.size.y * next.z));
+            const uint8_t held = before.at(next);
+            const double value = volume.intensities[index];
+            const bool is_wall = is_seed(held) || volume.locked[held] || (op.limits.only_unpainted && held != 0) ||
+                                 (op.limits.inside && *op.limits.inside != held) ||
+                                 (op.limits.within && (value < op.limits.within->x || value > op.limits.within->y));
+            if (is_wall || is_reached[index] != 0) continue;
+            is_reached[index] = 1;
+            dense.groups[index] = dense.at(voxel);
+            const double cost = op.on == GrowSeedsOp::On::gradient    ? squared_gradient(before, volume, next)
+                                : op.on == GrowSeedsOp::On::intensity ? value
+                                                                      : -value;
+            frontier.emplace(std::isnan(cost) ? std::numeric_limits<double>::infinity() : cost, next);
+        }
+    };
+    for (const Size3& seed : seeds) reach_from(seed);
+    while (!frontier.empty()) {
+        const Size3 voxel = frontier.begin()->second;
+        frontier.erase(frontier.begin());
+        reach_from(voxel);
+    }
     return dense;
 }
 

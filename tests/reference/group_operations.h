@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "engine/annotation/brush.h"
 #include "engine/annotation/operations/operations.h"
 #include "engine/annotation/trace/tracing.h"
 
@@ -40,9 +41,10 @@ struct DenseVolume {
     glm::dvec3 spacing{1.0};  ///< mm
     std::vector<double> intensities{};
     const TraceGraph* trace = nullptr;
+    GroupSet locked{};
 };
 
-/// The groups that the operation wants, without limits and locks.
+/// The groups that the operation wants, without limits and locks unless they are a part of its definition.
 DenseGroups wanted(const GroupOperation& operation, const DenseGroups& before, const DenseVolume& volume);
 
 }  // namespace shvr::reference

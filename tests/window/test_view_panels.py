@@ -171,6 +171,30 @@ class Panels(Seen):
         self.press("Escape")
         self.until(lambda: not self.seen(window=OPERATIONS), "closed window")
 
+    def choose_operation(self, title):
+        """In the window of operations, which shows Grow."""
+        self.click_on("Edit", "##MainMenuBar")
+        self.click_on("Operations on groups...", "##Menu_00")
+        self.see("gives a group all voxels within a distance of it", OPERATIONS)
+        self.click_on("Grow", OPERATIONS)
+        self.click_on(title, "##Combo_00")
+
+    def painted_scan(self):
+        self.open_scan(self.write_ball(), preferences={"hints_seen": 3})
+        x, y = self.middle()
+        self.check_probe(x, y)
+        self.check_stroke((x, y), (x + 20, y))
+        self.see("Painted ", "Status")
+        return x, y
+
+    def test_the_preview_of_growing_from_seeds_follows_each_stroke(self):
+        x, y = self.painted_scan()
+        self.choose_operation("Grow from seeds")
+        previewed = self.see("Grow from seeds: ", OPERATIONS)["text"]
+        self.assertIn(" painted in ", previewed)
+        self.check_follows(lambda: self.stroke((x - 20, y), (x - 25, y), pause_s=0), "preview_operation")
+        self.until(lambda: self.see("Grow from seeds: ", OPERATIONS)["text"] != previewed, "renewed preview")
+
 
 if __name__ == "__main__":
     unittest.main()

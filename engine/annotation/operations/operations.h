@@ -8,7 +8,9 @@
 #include <variant>
 #include <vector>
 
+#include "engine/annotation/operations/grow_seeds_op.h"
 #include "engine/annotation/operations/operation_limits.h"
+#include "engine/volume/grid.h"
 
 namespace shvr {
 
@@ -221,7 +223,7 @@ inline constexpr auto OPERATIONS = std::tuple{
                                f.number("from", op.from, any_number(), {"lowest intensity"});
                                f.number("to", op.to, any_number(), {"highest intensity"});
                                f.check("from", op.from || op.to, "a number, unless to is given");
-                               f.check("to", !op.from || !op.to || *op.from <= *op.to, "from at most");
+                               f.check("to", !op.from || !op.to || *op.from <= *op.to, "at least as much as from");
                            }),
     operation<FillHolesOp>({"fill_holes", "Fill holes", "fills what a group encloses on all sides"},
                            [](auto& f, FillHolesOp& op) { GROUP_FIELD(f, op.group); }),
@@ -255,6 +257,18 @@ inline constexpr auto OPERATIONS = std::tuple{
             f.choice("method", op.method, {"the weights of the voxels within the distance"});
             f.number("distance", op.distance, OPERATION_DISTANCE,
                      {.meaning = "in the unit of the volume's spacing, inclusive", .is_required = true});
+        }),
+    operation<GrowSeedsOp>(
+        {"grow_seeds", "Grow from seeds", "grows painted groups until they meet on edges or ridges of intensity"},
+        [](auto& f, GrowSeedsOp& op) {
+            f.other(
+                "groups", [&](const JsonNode& node) { op.groups = read_groups(node); },
+                [&] { return op.groups.empty() ? std::nullopt : std::optional(text_of(op.groups)); },
+                {"the groups that grow, such as [1, 2]; default: all but the one named by inside"});
+            f.choice("on", op.on, {"what comes first: small gradients, low intensities, or high ones (inverted)"});
+            f.any_whole("margin", op.margin, 0, MAX_SIDE,
+                        {.meaning = "how far beyond the box around the seeds, in voxels",
+                         .standard = "16 without a box, otherwise the whole box"});
         }),
     operation<MaskFromTraceOp>(
         {"mask_from_trace", "Mask from trace", "gives a group all voxels in the trace's balls and cones"},

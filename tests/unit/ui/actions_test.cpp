@@ -68,6 +68,7 @@ std::vector<Action> samples()
             FillBetweenOp{.group = 255, .axis = FillBetweenOp::Axis::y},
             SmoothOp{.distance = 2.5},
             SmoothOp{.groups = {7, 3}, .distance = 0.25, .method = SmoothOp::Method::gaussian},
+            GrowSeedsOp{.groups = {7, 3}, .on = GrowSeedsOp::On::inverted, .margin = 4},
             MaskFromTraceOp{.group = 7, .of = {1, 255}, .limits = {.only_unpainted = true}},
             TraceFromMaskOp{.group = 2, .spur = 0.5, .tolerance = 1e-3},
             DragNode{true},

@@ -82,7 +82,7 @@ void limit(GroupOperation& operation, const Model& model)
 void draw_choice()
 {
     field_name("Operation");
-    if (ImGui::BeginCombo("##operation", OPERATION_ROWS[state.chosen].title)) {
+    if (ImGui::BeginCombo("##operation", OPERATION_ROWS[state.chosen].title, ImGuiComboFlags_HeightLargest)) {
         for (size_t i = 0; i < OPERATION_ROWS.size(); ++i) {
             if (ImGui::Selectable(OPERATION_ROWS[i].title, i == state.chosen)) state.chosen = i;
             hint(OPERATION_ROWS[i].meaning);

@@ -100,7 +100,7 @@ inline OperationResult check_operation(const GroupOperation& operation, const De
                 return OperationLimits{};
         },
         operation);
-    reference::DenseVolume volume{spacing, {}, trace};
+    reference::DenseVolume volume{spacing, {}, trace, locked};
     reference::for_each_voxel(
         before.size, [&](const Size3& voxel) { volume.intensities.push_back(PatternSource::value_at(voxel)); });
     const DenseGroups expected = limited(before, reference::wanted(operation, before, volume), limits, locked);
