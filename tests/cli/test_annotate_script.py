@@ -372,6 +372,29 @@ class OperationsOnGroups(CliTest):
         self.assertIn('key on is "fog"; expected one of "gradient", "intensity", "inverted"',
                       self.refused({"op": "grow_seeds", "on": "fog"}))
 
+    def test_lines_of_cuts(self):
+        self.prepare()
+        cut = {"op": "lasso", "polygon": [[0, 0], [10.5, 0], [10.5, 30], [0, 30]], "camera": "front"}
+        view = {"eye": [0, 0, 0], "target": [0, 0, -1], "up": [0, 1, 0]}
+        # A perspective eye 100 voxels above the box, whose line of sight hits its middle.
+        seen = {**cut, "camera": {"projection": "perspective", "eye": [10.5, 10.5, 110], "target": [10.5, 10.5, 0],
+                                  "up": [0, 1, 0]},
+                "polygon": [[-0.0001, -1], [0.0001, -1], [0.0001, 1], [-0.0001, 1]]}
+        self.annotate([
+            fill_box(3, 10, 10, 10, radius=2.2), expect_groups(_3=125),
+            cut, expect_groups(_3=75), {"op": "undo"}, expect_groups(_3=125),
+            {**cut, "side": "outside"}, expect_groups(_3=50), {"op": "undo"},
+            {**cut, "depth": [9.5, 10.5]}, expect_groups(_3=105), {"op": "undo"},
+            {**cut, "camera": view, "group": 7}, expect_groups(_3=75, _7=50), {"op": "undo"},
+            {**cut, "camera": view, "depth": [-10.5, -9.5]}, expect_groups(_3=105), {"op": "undo"},
+            seen, expect_groups(_3=100), {"op": "undo"},
+            {**cut, "groups": [4]}, expect_groups(_3=125)])
+        self.assertIn("expected an array of 3 to 10000 points", self.refused({**cut, "polygon": [[0, 0], [1, 1]]}))
+        self.assertIn("key camera.up is [0,0,3]; expected a direction across the line from eye to target",
+                      self.refused({**cut, "camera": {**view, "up": [0, 0, 3]}}))
+        self.assertIn('key camera is "side"; expected one of "front", "back"', self.refused({**cut, "camera": "side"}))
+        self.assertIn("key camera is missing", self.refused({"op": "lasso", "polygon": cut["polygon"]}))
+
     def test_mask_from_trace(self):
         self.prepare()
         self.annotate([

@@ -314,6 +314,57 @@ DenseGroups wanted_by(const GrowSeedsOp& op, DenseGroups dense, const DenseVolum
     return dense;
 }
 
+/// Whether a line from the point to the right crosses the polygon an odd number of times.
+bool is_enclosed(const glm::dvec2& point, const std::vector<glm::dvec2>& polygon)
+{
+    int crossings = 0;
+    for (size_t i = 0; i < polygon.size(); ++i) {
+        glm::dvec2 low = polygon[i], high = polygon[(i + 1) % polygon.size()];
+        if (low.y > high.y) std::swap(low, high);
+        if (point.y < low.y || point.y >= high.y) continue;
+        // To the left of the side: the area of the triangle (low, high, point) is above 0.
+        const double area = (high.x - low.x) * (point.y - low.y) - (high.y - low.y) * (point.x - low.x);
+        crossings += area > 0.0;
+    }
+    return crossings % 2 == 1;
+}
+
+/// To the right, upwards and forwards, from the lower left corner of the face of the volume.
+glm::dvec3 seen_from(LassoView::Face face, const glm::dvec3& at, const glm::dvec3& extent)
+{
+    const glm::dvec3 from_end = extent - at;
+    switch (face) {
+        case LassoView::Face::front: return {at.x, at.z, at.y};
+        case LassoView::Face::back: return {from_end.x, at.z, from_end.y};
+        case LassoView::Face::left: return {from_end.y, at.z, at.x};
+        case LassoView::Face::right: return {at.y, at.z, from_end.x};
+        case LassoView::Face::top: return {at.x, at.y, from_end.z};
+        case LassoView::Face::bottom: return {from_end.x, at.y, at.z};
+        case LassoView::Face::none: break;
+    }
+    throw std::logic_error("no face");
+}
+
+DenseGroups wanted_by(const LassoOp& op, DenseGroups dense, const DenseVolume& volume)
+{
+    const glm::dvec3 forward = glm::normalize(op.view.target - op.view.eye),
+                     right = glm::normalize(glm::cross(forward, op.view.up)), up = glm::cross(right, forward),
+                     extent = glm::dvec3(dense.size) * volume.spacing;
+    const bool is_perspective = op.view.projection == LassoView::Projection::perspective;
+    for_each_voxel(dense.size, [&](const Size3& voxel) {
+        uint8_t& group = dense.at(voxel);
+        if (group == 0 || (!op.groups.empty() && std::ranges::count(op.groups, group) == 0)) return;
+        const glm::dvec3 at = (glm::dvec3(voxel) + 0.5) * volume.spacing, way = at - op.view.eye;
+        glm::dvec3 seen(glm::dot(way, right), glm::dot(way, up), glm::dot(way, forward));
+        if (op.view.face != LassoView::Face::none) seen = seen_from(op.view.face, at, extent);
+        if (op.depth && (seen.z < op.depth->x || seen.z > op.depth->y)) return;
+        const glm::dvec2 place = is_perspective ? glm::dvec2(seen) / seen.z : glm::dvec2(seen);
+        const bool encloses = (!is_perspective || seen.z > 0.0) && is_enclosed(place, op.polygon);
+        if (encloses == (op.side == LassoOp::Side::inside)) group = uint8_t(op.to_group);
+    });
+    return dense;
+}
+
 /// The least of distance minus radius over the balls on the way from a to b, by golden sections: both are convex.
 double outside_by(const glm::dvec3& point, const TraceGraph& trace, const TraceInternode& internode)
 {

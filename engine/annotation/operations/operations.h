@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/annotation/operations/grow_seeds_op.h"
+#include "engine/annotation/operations/lasso_op.h"
 #include "engine/annotation/operations/operation_limits.h"
 #include "engine/volume/grid.h"
 
@@ -269,6 +270,32 @@ inline constexpr auto OPERATIONS = std::tuple{
             f.any_whole("margin", op.margin, 0, MAX_SIDE,
                         {.meaning = "how far beyond the box around the seeds, in voxels",
                          .standard = "16 without a box, otherwise the whole box"});
+        }),
+    operation<LassoOp>(
+        {"lasso", "Cut by an outline", "erases what an outline drawn in a view encloses, or what it does not"},
+        [](auto& f, LassoOp& op) {
+            f.whole("group", op.to_group, 0, 255, {"the group that the voxels get; 0: they are erased"});
+            f.other(
+                "groups", [&](const JsonNode& node) { op.groups = read_groups(node); },
+                [&] { return op.groups.empty() ? std::nullopt : std::optional(text_of(op.groups)); },
+                {"only voxels of these groups, such as [1, 2]; default: of all groups"});
+            f.choice("side", op.side, {"which side of the outline"});
+            f.other(
+                "polygon", [&](const JsonNode& node) { op.polygon = read_polygon(node); },
+                [&] { return op.polygon.empty() ? std::nullopt : std::optional(text_of(op.polygon)); },
+                {.meaning = "points of the outline, [[x,y], ...], to the right and upwards from the line of sight, in "
+                            "the unit of the volume's spacing; perspective: at distance 1 from the eye",
+                 .is_required = true});
+            f.other(
+                "camera", [&](const JsonNode& node) { op.view = read_lasso_view(node); },
+                [&] { return std::optional(text_of(op.view)); },
+                {.meaning = "a face of the volume, such as \"front\", whose lower left corner is the origin, or "
+                            "projection, eye, target and up, in the unit of the volume's spacing",
+                 .is_required = true});
+            f.other(
+                "depth", [&](const JsonNode& node) { op.depth = read_range(node); },
+                [&] { return op.depth ? std::optional(text_of(*op.depth)) : std::nullopt; },
+                {"only voxels at these distances along the line of sight: [near, far], inclusive"});
         }),
     operation<MaskFromTraceOp>(
         {"mask_from_trace", "Mask from trace", "gives a group all voxels in the trace's balls and cones"},

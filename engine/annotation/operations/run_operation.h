@@ -30,6 +30,7 @@ void perform(const CloseOp& op, MaskEdit& edit, const Progress& progress);
 void perform(const HollowOp& op, MaskEdit& edit, const Progress& progress);
 void perform(const SmoothOp& op, MaskEdit& edit, const Progress& progress);
 void perform(const GrowSeedsOp& op, MaskEdit& edit, const Progress& progress);
+void perform(const LassoOp& op, MaskEdit& edit, const Progress& progress);
 void perform(const MaskFromTraceOp& op, MaskEdit& edit, const Progress& progress);
 void perform(const TraceFromMaskOp& op, MaskEdit& edit, const Progress& progress);
 

@@ -126,6 +126,7 @@ const Row ROWS[] = {
     {R"({"op":"smooth","distance":2})", "saved, undo, voxels", {HOLLOW_BALL}},
     {R"({"op":"preview_operation","operation":"{\"op\":\"grow\",\"group\":3,\"distance\":2.5}"})", "", {HOLLOW_BALL}},
     {R"({"op":"grow_seeds","on":"gradient","margin":2})", "saved, undo, voxels", {BALL, NEXT_BALL}},
+    {R"({"op":"lasso","polygon":[[12,12],[20,12],[16,24]],"camera":"front"})", "saved, undo, voxels", {BALL}},
     {R"({"op":"mask_from_trace","group":3})", "saved, undo, voxels", {NODE, NEXT_NODE}},
     {R"({"op":"trace_from_mask","group":3,"spur":2})", "saved, trace, undo", {HOLLOW_BALL}},
     {R"({"op":"drag_node","on":true})", "drags", {NODE, NEXT_NODE}},
