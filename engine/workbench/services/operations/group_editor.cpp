@@ -86,6 +86,11 @@ void GroupEditor::begin(const GroupOperation& operation)
 {
     const Annotator& annotator = document_->annotator;
     if (annotator.stroke_is_running()) fail("a stroke is being painted; expected it to have ended");
+    const std::vector<Jobs::State> jobs = jobs_.states();
+    const auto running = std::ranges::find(jobs, running_, &Jobs::State::number);
+    if (running != jobs.end() && !running->is_cancelled)
+        fail(row_of(operation).title, ": \"", running->what,
+             "\" is still being computed; expected it to have ended: wait for it, or cancel it in the list of jobs");
     end_preview();
     others_.record_settings();
     is_done_ = false;

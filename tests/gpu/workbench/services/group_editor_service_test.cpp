@@ -1,5 +1,8 @@
 // The editor of groups alone: an operation is one step, unless groups change while it is computed or it is cancelled.
 
+#include <atomic>
+#include <thread>
+
 #include <doctest/doctest.h>
 
 #include "engine/workbench/services/operations/group_editor.h"
@@ -78,6 +81,39 @@ TEST_CASE_FIXTURE(GroupsAlone, "groups: an operation that is cancelled or fails 
     CHECK_THROWS_WITH_AS(static_cast<void>(groups.finish({})),
                          "the distance is 1e+09, 1e+09 voxels along x; expected at most 512 voxels", Error);
     CHECK(steps() == 1);
+}
+
+TEST_CASE_FIXTURE(GroupsAlone,
+                  "groups: an operation is refused while another is computed, but not once it is cancelled")
+{
+    paint();
+    const int64_t painted = voxels(1);
+    // A job before it keeps it from beginning, so it is certain to be there.
+    std::atomic<bool> goes_on = false;
+    const auto hold = [&](ProgressReporter&) -> Jobs::Completion {
+        while (!goes_on) std::this_thread::yield();
+        return {};
+    };
+    desk.jobs.start("holds the worker", hold);
+    groups.act(GrowOp{.group = 1, .distance = 2.0});
+    CHECK_THROWS_WITH_AS(
+        groups.act(ShrinkOp{.group = 1, .distance = 1.0}),
+        "Shrink: \"grow, group 1\" is still being computed; expected it to have ended: wait for it, or "
+        "cancel it in the list of jobs",
+        Error);
+    goes_on = true;
+    await_end();
+    CHECK(voxels(1) > painted);
+    CHECK(steps() == 2);
+    goes_on = false;
+    desk.jobs.start("holds the worker", hold);
+    groups.act(GrowOp{.group = 1, .distance = 2.0});
+    desk.jobs.cancel_all();
+    groups.act(ShrinkOp{.group = 1, .distance = 1.0});
+    goes_on = true;
+    await_end();
+    CHECK(steps() == 3);
+    CHECK(document().annotator.history().label_of(2) == "shrink, group 1");
 }
 
 TEST_CASE_FIXTURE(GroupsAlone,
