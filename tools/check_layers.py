@@ -89,7 +89,7 @@ MAY_INCLUDE = {
     "engine/workbench/lists": "engine/base engine/look engine/annotation/trace engine/session engine/live "
     "engine/workbench/models engine/workbench/actions",
     "engine/workbench/forms": "engine/base engine/remote engine/tasks engine/workbench/models",
-    "engine/workbench/sight": "engine/base engine/look engine/annotation/trace engine/session engine/session/words engine/workbench/models "
+    "engine/workbench/sight": "engine/base engine/look engine/annotation/operations engine/annotation/trace engine/session engine/session/words engine/workbench/models "
     "engine/workbench/lists",
     "engine/workbench/edits": "engine/session haptics engine/workbench/touch engine/workbench/models "
     "engine/workbench/actions",

@@ -11,6 +11,7 @@
 #include "engine/workbench/bindings/preferences_file.h"
 #include "ui/browser.h"
 #include "ui/panels/field_keys.h"
+#include "ui/panels/outline_tool.h"
 
 namespace shvr::ui {
 
@@ -264,6 +265,15 @@ bool is_overtaken(const std::vector<InputEvent>& events, const InputEvent& event
            std::holds_alternative<MoveEvent>(events[next].what);
 }
 
+/// Gives Enter and Escape over the picture to the outline that is drawn there, if there is one.
+bool is_for_outline(const KeyEvent& event)
+{
+    using Wish = OutlineTool::Wish;
+    if (!event.pressed || event.repeated || (event.mods & (GLFW_MOD_CONTROL | GLFW_MOD_ALT))) return false;
+    if (event.key == GLFW_KEY_ENTER || event.key == GLFW_KEY_KP_ENTER) return outline_tool().wants(Wish::apply);
+    return event.key == GLFW_KEY_ESCAPE && outline_tool().wants(Wish::cancel);
+}
+
 }  // namespace
 
 /// Dear ImGui answers for the previous frame. Unless a button is held or a popup is open, looks up the window instead.
@@ -345,7 +355,7 @@ void App::handle_events(double timeout_s)
         }
         const bool is_button = std::holds_alternative<ButtonEvent>(event.what);
         if (key || is_button) report_.asked(event.time_s);
-        const bool is_for_ui = key ? ui_has_key(*key) : is_button && ui_has_mouse(event);
+        const bool is_for_ui = key ? ui_has_key(*key) || is_for_outline(*key) : is_button && ui_has_mouse(event);
         if (!key || !key->pressed || panels_have_keyboard() || !moves_focus(*key)) window_.tell_ui(event);
         if (key) {
             keyboard_.handle(*key, model(), is_for_ui, actions_);

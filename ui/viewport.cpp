@@ -10,6 +10,7 @@
 #include "engine/workbench/sight/hits.h"
 #include "ui/files/file_list.h"
 #include "ui/mouse_feed.h"
+#include "ui/panels/outline_tool.h"
 
 namespace shvr::ui {
 
@@ -124,7 +125,13 @@ void Viewport::press_left(const ButtonEvent& event, const When& when, const Mode
     pressed_node_.reset();
     pressed_s_ = when.latest_s;
     is_second_ = is_double(when.earliest_s, event.at);
-    if (event.mods & GLFW_MOD_SHIFT) {
+    if (outline_tool().is_on() && kind != Pane::Kind::map && !(event.mods & (GLFW_MOD_SHIFT | GLFW_MOD_ALT)) &&
+        pane_ < model.panes.size()) {
+        const Pane& pane = model.panes[pane_].pane;
+        gesture_ = Gesture::outline;
+        outline_tool().begin(pane, glm::dvec2(layout_.begin + pane.box.begin), in_pane(event.at, model),
+                             event.mods & GLFW_MOD_CONTROL);
+    } else if (event.mods & GLFW_MOD_SHIFT) {
         const bool is_flat = kind == Pane::Kind::map || kind == Pane::Kind::slice;
         gesture_ = is_flat ? Gesture::move_in_map : Gesture::move;
     } else if ((event.mods & GLFW_MOD_CONTROL) && kind == Pane::Kind::slice) {
@@ -157,6 +164,7 @@ void Viewport::release(const ButtonEvent& event, const Model& model, Actions& ac
     if (gesture_ == Gesture::none || event.button != button_) return;
     if (gesture_ == Gesture::paint || gesture_ == Gesture::stroke) actions.emplace_back(Paint{false});
     if (gesture_ == Gesture::node) actions.emplace_back(DragNode{false});
+    if (gesture_ == Gesture::outline) outline_tool().end();
     if (gesture_ == Gesture::press) click(model, actions);
     gesture_ = Gesture::none;
 }
@@ -247,6 +255,7 @@ void Viewport::follow(const MoveEvent& event, bool ui_has_mouse, const Model& mo
         case Gesture::node:
         case Gesture::cross: actions.emplace_back(ProbeTo{pane_, pixel}); break;
         case Gesture::contrast: drag_contrast(heights, model, actions); break;
+        case Gesture::outline: outline_tool().drag(pixel); break;
         case Gesture::press: break;
         case Gesture::none:
             if (is_here) hover(model, jumps, actions);

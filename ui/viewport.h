@@ -19,6 +19,9 @@
 // wheel moves the slice; the gestures for turning drag the cross, which moves the other slices; Ctrl + left changes
 // the contrast, and so does the right button with all tools but turn.
 //
+// While the window of operations shows a cut, a drag with the left button draws its outline (outline_tool.h); Ctrl
+// changes between lasso and rectangle.
+//
 // A motion that no hand makes (is_jump) lifts the brush, and so does the first motion after the pointer was elsewhere.
 
 #include <optional>
@@ -51,10 +54,11 @@ private:
         turn,
         move,
         move_in_map,
-        paint,   ///< at the probe, in its plane
-        stroke,  ///< along the visible surface
-        node,    ///< moves the pressed node
-        cross,   ///< moves the cross of the slices
+        paint,    ///< at the probe, in its plane
+        stroke,   ///< along the visible surface
+        node,     ///< moves the pressed node
+        cross,    ///< moves the cross of the slices
+        outline,  ///< draws the outline of a cut
         contrast
     };
     struct When {

@@ -187,6 +187,31 @@ class Panels(Seen):
         self.see("Painted ", "Status")
         return x, y
 
+    def test_a_cut_is_drawn_in_the_picture_taken_back_and_carried_out(self):
+        x, y = self.painted_scan()
+        self.choose_operation("Cut by an outline")
+        self.see("draw an outline", OPERATIONS)
+        around = [(x - 80, y - 80), (x + 100, y - 80), (x + 100, y + 80), (x - 80, y + 80)]
+        self.do("keydown", "ctrl", pause_s=0)
+        self.check_drag(around[0], [around[2]], "preview_operation")   # a rectangle
+        self.do("keyup", "ctrl", pause_s=0)
+        previewed = self.see("Cut by an outline: ", OPERATIONS)["text"]
+        self.assertIn(" erased", previewed)
+        self.assertEqual(len(json.loads(self.done()[-1]["operation"])["polygon"]), 4)
+        self.check_key("Escape", "preview_operation")                  # takes the outline away, not the window
+        self.assertNotIn("operation", self.done()[-1])
+        self.see("draw an outline", OPERATIONS)
+        self.check_drag(around[0], around[1:], "preview_operation")    # a lasso
+        self.assertEqual(self.see("Cut by an outline: ", OPERATIONS)["text"], previewed)
+        self.check_key("Enter", "lasso")
+        self.assertEqual(self.see("Cut by an outline: ", "Status")["text"], previewed)
+        line = next(each for each in self.done() if each["op"] == "lasso")
+        self.assertEqual(line["camera"]["projection"], "perspective")
+        self.assertGreater(len(line["polygon"]), 3)
+        self.see("draw an outline", OPERATIONS)
+        self.check_key("Escape", "show_dialog")
+        self.until(lambda: not self.seen(window=OPERATIONS), "closed window")
+
     def test_the_preview_of_growing_from_seeds_follows_each_stroke(self):
         x, y = self.painted_scan()
         self.choose_operation("Grow from seeds")

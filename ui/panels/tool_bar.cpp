@@ -11,6 +11,7 @@
 #include "engine/workbench/bindings/tools.h"
 #include "engine/workbench/edits/edit.h"
 #include "engine/workbench/edits/group_steps.h"
+#include "ui/panels/outline_tool.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/style.h"
 #include "ui/panels/widgets.h"
@@ -206,8 +207,10 @@ void active_group(const Model& model, Actions& actions)
 void mouse_words(const Model& model)
 {
     const bool is_over_pane = model.pointer && model.pointer->pane < model.panes.size();
+    const Pane::Kind over = is_over_pane ? model.panes[model.pointer->pane].pane.kind : Pane::Kind::main;
+    const bool cuts = outline_tool().is_on() && over != Pane::Kind::map;
     const std::string words =
-        mouse_in_words(model.tool(), is_over_pane ? model.panes[model.pointer->pane].pane.kind : Pane::Kind::main);
+        cuts ? "left: draw the outline of the cut, Alt + left: turn, wheel: zoom" : mouse_in_words(model.tool(), over);
     ImGui::SameLine(0.0f, ImGui::GetFontSize());
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("Mouse  %s", words.c_str());

@@ -8,6 +8,7 @@
 #include "engine/session/session_patch.h"
 #include "engine/workbench/actions/action_rows.h"
 #include "tests/support/model_world.h"
+#include "ui/panels/outline_tool.h"
 
 using namespace shvr;
 using namespace shvr::test;
@@ -252,4 +253,42 @@ TEST_CASE("In a slice the cross is dragged, and the contrast with Ctrl or the ri
     pointing.move(300.0, 40.0);
     CHECK(pointing.said == "");
     CHECK((pointing.viewport.pointer() == Pointer{1, {100.0, 40.0}}));
+}
+
+TEST_CASE("While a cut is chosen, a drag draws its outline, with Ctrl a rectangle, and Enter and Escape end it")
+{
+    using Wish = OutlineTool::Wish;
+    OutlineTool& tool = outline_tool();
+    for (const bool is_slice : {false, true})
+        for (const Tool held : {Tool::turn, Tool::paint, Tool::trace, Tool::measure}) {
+            CAPTURE(is_slice);
+            Mouse mouse(held, is_slice);
+            const double left = is_slice ? 200.0 : 0.0;
+            CHECK(mouse.drag(LEFT, left + 40.0, 40.0) != "");  // not on
+            tool.set_on(true);
+            CHECK(!tool.wants(Wish::apply));  // keys are the scene's until something is drawn
+            CHECK(!tool.wants(Wish::cancel));
+            CHECK(mouse.drag(LEFT, left + 40.0, 40.0, CONTROL) == "");
+            CHECK((tool.drawn()->outline == std::vector<glm::dvec2>{{40, 40}, {52, 40}, {52, 40}, {40, 40}}));
+            mouse.press(LEFT, left + 40.0, 40.0);
+            mouse.move(left + 41.0, 40.0);  // less than a step
+            mouse.move(left + 80.0, 50.0);
+            CHECK(tool.is_drawing());
+            CHECK(!tool.wants(Wish::apply));
+            LassoOp op{.polygon = {{1, 1}, {2, 2}, {2, 1}}};
+            tool.set(op, std::nullopt, mouse.world.model);
+            CHECK(op.polygon.empty());
+            mouse.move(left + 60.0, 90.0);
+            mouse.release(LEFT, left + 60.0, 90.0);
+            CHECK((tool.drawn()->outline == std::vector<glm::dvec2>{{40, 40}, {80, 50}, {60, 90}}));
+            CHECK((tool.drawn()->origin == glm::dvec2(left, 0)));
+            tool.set(op, std::nullopt, mouse.world.model);
+            CHECK(op.polygon.size() == 3);
+            CHECK(tool.wants(Wish::apply));
+            CHECK((tool.take_wish() == Wish::apply && tool.take_wish() == Wish::none));
+            mouse.click(left + 40.0, 40.0);  // too small: nothing is drawn any more
+            CHECK(!tool.drawn());
+            CHECK(mouse.drag(LEFT, left + 40.0, 40.0, SHIFT) != "");  // moves
+            tool.set_on(false);
+        }
 }

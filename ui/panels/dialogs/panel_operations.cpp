@@ -11,6 +11,8 @@
 
 #include "engine/workbench/actions/action_rows.h"
 #include "ui/panels/dialogs/field_widgets.h"
+#include "ui/panels/dialogs/operation_rows.h"
+#include "ui/panels/outline_tool.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 
@@ -34,7 +36,10 @@ struct OperationsState {
     int64_t group = 0;     ///< the active group that was last taken over
     uint64_t opening = 0;  ///< the document for which distances were suggested
     bool shows_preview = true;
-    bool is_limited_to_view = false, is_limited_to_group = false;
+    bool is_limited_to_view = false;
+    /// What is typed as lists of groups, and why it is none.
+    std::array<std::string, std::variant_size_v<GroupOperation>> groups{};
+    std::string why_no_groups;
     std::string applied;  ///< line that was carried out last; it is not previewed again until something is changed
 };
 OperationsState state;
@@ -72,9 +77,6 @@ void limit(GroupOperation& operation, const Model& model)
                                        glm::min(Size3(glm::ceil(cut.upper)), Size3(model.volume.size))};
                 op.limits.box = state.is_limited_to_view ? std::optional(visible) : std::nullopt;
             }
-            if constexpr (requires { op.groups; })
-                op.groups =
-                    state.is_limited_to_group ? std::vector<uint8_t>{uint8_t(state.group)} : std::vector<uint8_t>{};
         },
         operation);
 }
@@ -93,29 +95,22 @@ void draw_choice()
     ImGui::TextDisabled("%s", OPERATION_ROWS[state.chosen].meaning);
 }
 
-void draw_length(const char* name, double& length, const Model& model)
-{
-    const std::string unit = model.volume.unit.empty()   ? "voxels"
-                             : model.volume.unit == "um" ? "\u00b5m"
-                                                         : model.volume.unit;
-    field_name((std::string(name) + " (" + unit + ")").c_str());
-    ImGui::InputDouble((std::string("##") + name).c_str(), &length, 0.0, 0.0, "%.6g");
-}
-
 void draw_operation(GroupOperation& operation, const Model& model)
 {
     constexpr std::string_view ROWS_OF_THEIR_OWN[]{"distance", "wall", "inside"};
+    state.why_no_groups.clear();
     draw_choice();
     draw_fields([&](Fields& f) { std::visit([&](auto& op) { operation_fields(f, op); }, operation); }, {}, false,
                 ROWS_OF_THEIR_OWN);
     std::visit(
         [&](auto& op) {
-            if constexpr (requires { op.distance; }) draw_length("Distance", op.distance, model);
-            if constexpr (requires { op.wall; }) draw_length("Wall", op.wall, model);
-            if constexpr (requires { op.groups; }) {
-                field_name("Groups");
-                ImGui::Checkbox("Only the active group", &state.is_limited_to_group);
-            }
+            if constexpr (requires { op.distance; }) length_row("Distance", op.distance, model);
+            if constexpr (requires { op.wall; }) length_row("Wall", op.wall, model);
+            if constexpr (requires { op.groups; })
+                state.why_no_groups = groups_row("Groups", state.groups[state.chosen], op.groups, model);
+            if constexpr (requires { op.of; })
+                state.why_no_groups = groups_row("Of groups", state.groups[state.chosen], op.of, model);
+            if constexpr (std::is_same_v<std::remove_cvref_t<decltype(op)>, LassoOp>) cut_rows(op, model);
             if constexpr (requires { op.limits; }) {
                 field_name("Where");
                 ImGui::Checkbox("Only in the visible part (cutting planes)", &state.is_limited_to_view);
@@ -127,6 +122,9 @@ void draw_operation(GroupOperation& operation, const Model& model)
 /// Returns why the operation cannot be carried out; empty: it can.
 std::string refusal(const Model& model, const GroupOperation& operation, const std::string& line)
 {
+    if (!state.why_no_groups.empty()) return state.why_no_groups;
+    if (const auto* const cut = std::get_if<LassoOp>(&operation); cut && cut->polygon.empty())
+        return "draw an outline: drag in the picture with the left button";
     try {
         static_cast<void>(read_action(line, WINDOW));
     } catch (const Error& error) {
@@ -134,6 +132,21 @@ std::string refusal(const Model& model, const GroupOperation& operation, const s
         return words.starts_with(begin) ? words.substr(begin.size()) : words;
     }
     return std::visit([&](const auto& op) { return why_not(model, Action(op)); }, operation);
+}
+
+void apply(const GroupOperation& operation, const std::string& line, Actions& actions)
+{
+    state.applied = line;
+    std::visit([&](const auto& op) { actions.push_back(op); }, operation);
+    outline_tool().clear();
+}
+
+/// Moves the window up if it has grown out of the screen, as by an operation with more rows. Inside the window.
+void keep_on_screen(float lower_edge)
+{
+    const ImVec2 at = ImGui::GetWindowPos();
+    const float top = std::max(lower_edge - ImGui::GetWindowHeight(), ImGui::GetMainViewport()->WorkPos.y);
+    if (at.y > top) ImGui::SetWindowPos({at.x, top});
 }
 
 void follow_preview(const Model& model, const std::string& line, bool is_possible, Actions& actions)
@@ -152,19 +165,23 @@ void operations_window(const Model& model, Actions& actions)
 {
     if (model.dialog != Dialog::operation || !model.is_open) {
         if (!model.previewed.empty()) actions.push_back(PreviewOperation{});
+        outline_tool().set_on(false);
         return;
     }
     follow(model);
     // Over the side panel rather than over the picture.
     const ImGuiViewport& screen = *ImGui::GetMainViewport();
-    ImGui::SetNextWindowPos(
-        {screen.WorkPos.x + screen.WorkSize.x, screen.WorkPos.y + screen.WorkSize.y - 2.0f * ImGui::GetFontSize()},
-        ImGuiCond_Appearing, {1.0f, 1.0f});
+    const float lower_edge = screen.WorkPos.y + screen.WorkSize.y - 2.0f * ImGui::GetFontSize();
+    ImGui::SetNextWindowPos({screen.WorkPos.x + screen.WorkSize.x, lower_edge}, ImGuiCond_Appearing, {1.0f, 1.0f});
     size_dialog();
     bool is_shown = true;
     const bool is_drawn =
         ImGui::Begin(WINDOW, &is_shown, ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
+    outline_tool().set_on(is_drawn && std::holds_alternative<LassoOp>(state.operations[state.chosen]));
     if (is_drawn) {
+        keep_on_screen(lower_edge);
+        const OutlineTool::Wish wish = outline_tool().take_wish();
+        if (wish == OutlineTool::Wish::cancel) outline_tool().clear();
         draw_operation(state.operations[state.chosen], model);
         GroupOperation operation = state.operations[state.chosen];
         limit(operation, model);
@@ -173,6 +190,7 @@ void operations_window(const Model& model, Actions& actions)
         ImGui::Checkbox("Preview", &state.shows_preview);
         hint("Shows in the picture which voxels would change, and counts them");
         follow_preview(model, line, why.empty(), actions);
+        draw_outline(model);
         const bool is_about_it = model.previewed == line && !model.preview_words.empty();
         const std::string known = model.is_previewing ? "Computing the preview"
                                   : is_about_it       ? model.preview_words
@@ -180,10 +198,8 @@ void operations_window(const Model& model, Actions& actions)
         dialog_note(model.has_preview_failed ? "" : known, !why.empty() ? why : model.has_preview_failed ? known : "");
         const ImVec2 button{6.0f * ImGui::GetFontSize(), 0.0f};
         ImGui::BeginDisabled(!why.empty());
-        if (ImGui::Button("Apply", button)) {
-            state.applied = line;
-            std::visit([&](const auto& op) { actions.push_back(op); }, operation);
-        }
+        if (ImGui::Button("Apply", button) || (why.empty() && wish == OutlineTool::Wish::apply))
+            apply(operation, line, actions);
         ImGui::EndDisabled();
         hint("Changes the voxels; Undo takes it back");
         ImGui::SameLine();

@@ -1,0 +1,23 @@
+#pragma once
+// Rows of the window of operations that its table of keys does not draw: lists of groups, and what a cut takes from the
+// picture. Between Window::begin_ui and Window::present, main thread.
+
+#include <string>
+
+#include "engine/workbench/actions/group_actions.h"
+#include "engine/workbench/models/model.h"
+
+namespace shvr::ui {
+
+/// A row with a list of groups, such as "1, 2"; empty: all. Changes `groups` while the text is a list of groups;
+/// returns why it is not, otherwise nothing.
+std::string groups_row(const char* name, std::string& text, std::vector<uint8_t>& groups, const Model& model);
+/// Draws a length in the unit of the spacing.
+void length_row(const char* name, double& length, const Model& model);
+
+/// Draws the rows of a cut, and takes what is drawn in the picture into it (outline_tool.h).
+void cut_rows(LassoOp& op, const Model& model);
+/// Draws the outline over the picture, while the view is the one in which it was drawn.
+void draw_outline(const Model& model);
+
+}  // namespace shvr::ui
