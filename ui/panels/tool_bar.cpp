@@ -210,7 +210,7 @@ void mouse_words(const Model& model)
     const Pane::Kind over = is_over_pane ? model.panes[model.pointer->pane].pane.kind : Pane::Kind::main;
     const bool cuts = outline_tool().is_on() && over != Pane::Kind::map;
     const std::string words =
-        cuts ? "left: draw the outline of the cut, Alt + left: turn, wheel: zoom" : mouse_in_words(model.tool(), over);
+        cuts ? "left: draw the outline of the cut, Shift + left: move" : mouse_in_words(model.tool(), over);
     ImGui::SameLine(0.0f, ImGui::GetFontSize());
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("Mouse  %s", words.c_str());
