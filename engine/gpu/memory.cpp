@@ -4,6 +4,8 @@
 #include <optional>
 #include <utility>
 
+#include "engine/base/machine/machine.h"
+
 namespace shvr::gpu {
 
 namespace {
@@ -35,6 +37,15 @@ bool is_shortage(VkResult result)
         case VK_ERROR_UNKNOWN: return true;
         default: return false;
     }
+}
+
+/// The bytes that other programs leave free. A device on the processor takes the process's own memory: a quarter of it.
+std::optional<uint64_t> bytes_left(const Device& device)
+{
+    const std::optional<uint64_t> left = device.heap_bytes_left();
+    if (!device.traits().is_cpu) return left;
+    const uint64_t share = memory_allowed() / 4;
+    return std::min(left.value_or(share), share);
 }
 
 }  // namespace
@@ -140,8 +151,7 @@ std::span<std::byte> Storage::mapped() const
 
 Memory::Memory(Device& device, const Budget& budget) : device_(device), budget_(budget)
 {
-    if (budget_.device_bytes == 0)
-        budget_.device_bytes = automatic_device_bytes(device.traits(), device.heap_bytes_left());
+    if (budget_.device_bytes == 0) budget_.device_bytes = automatic_device_bytes(device.traits(), bytes_left(device));
     if (budget_.host_bytes == 0) budget_.host_bytes = uint64_t(1) << 30;
 }
 

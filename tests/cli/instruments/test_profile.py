@@ -4,12 +4,13 @@ import csv
 import json
 import re
 import shutil
+import subprocess
 import tempfile
 import unittest
 import xml.etree.ElementTree
 from pathlib import Path
 
-from harness import CliTest, run
+from harness import ENVIRONMENT, SHVR, CliTest, Volume, run
 
 KEYS = ["passes", "first_frame", "frame_median_ms", "sum_median_ms", "counters", "bytes", "device", "driver"]
 PASS_KEYS = ["name", "count", "min_ms", "median_ms", "p95_ms", "max_ms", "record_min_ms", "record_median_ms",
@@ -284,6 +285,15 @@ class Profile(CliTest):
         resources = {one["name"]: one for one in graph["resources"]}
         self.assertTrue(resources["atlas"]["imported"])
         self.assertIsNone(resources["cell ranges"]["lifetime"])  # only the leap grid reads it
+
+    def test_budgets_are_shares_of_the_memory_that_a_process_was_given(self):
+        limit = 4 << 30
+        header = Volume.noise((12, 10, 8), seed=4).write(self.folder)
+        result = subprocess.run(["prlimit", f"--as={limit}", SHVR, "profile", header, "--frames", "1", "--json", "--quiet"],
+                                capture_output=True, text=True, check=False, env=ENVIRONMENT)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        memory = json.loads(result.stdout)["memory"]
+        self.assertEqual((memory["device_budget"], memory["host_budget"]), (limit // 4, limit // 2))
 
     def test_memory_of_a_frame_has_lifetimes_budgets_and_sums(self):
         """The sums, worked out again from the graph, whose lifetimes another part of the program finds."""
