@@ -210,10 +210,11 @@ MOST_ROUNDS = 5
 
 class Rounds(Remote):
     def shows_volume(self):
-        """Whether the volume, in the middle of the graphics window, differs from the background right of it."""
+        """Whether the volume, above the middle of the graphics window, differs from the background right of it. In the
+        middle, a text says that the first picture is being made."""
         self.see_frames(5)
         x, y = self.middle()
-        row = self.pixels()[2][y]
+        row = self.pixels()[2][y - 60]
         inside, outside = (row[3 * at:3 * at + 3] for at in (x - 60, 2 * x - 40))
         return bool(self.seen("Read only")) and inside != outside
 
