@@ -70,7 +70,7 @@ bool ThresholdBricks::get_ready(const VoxelBox& box, double threshold)
 
 std::vector<uint32_t> ThresholdBricks::bits_in(const VoxelBox& box, double threshold)
 {
-    if (reading_.valid()) {
+    if (reading_.valid() && !missing(box, threshold).empty()) {
         try {
             take_reading();
         } catch (const Error&) {  // if the brick is still needed, a later read reports the failure

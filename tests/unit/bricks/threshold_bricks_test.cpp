@@ -31,7 +31,7 @@ std::vector<float> noise()
     return voxels;
 }
 
-/// Reads of it are counted, and fail from z = 32 on if they should.
+/// Reads of it are counted, and fail or wait from z = 32 on if they should.
 class CountedSource final : public VolumeSource {
 public:
     explicit CountedSource(const std::vector<float>& voxels)
@@ -42,10 +42,12 @@ public:
     {
         ++reads;
         if (fails && box.upper.z > 32) fail("no such slice");
+        while (is_silent && box.upper.z > 32) std::this_thread::yield();
         source_.read(box, voxels);
     }
     mutable std::atomic<int> reads = 0;
     bool fails = false;
+    std::atomic<bool> is_silent = false;
 
 private:
     MemorySource source_;
@@ -132,4 +134,20 @@ TEST_CASE("voxels that cannot be read are told of, and others are not affected")
     CHECK(wrong_bits(bricks.bits_in(whole, 50.0), whole, voxels, 50.0) == 0);
     counted->fails = false;
     CHECK(wrong_bits(bricks.bits_in(broken, 50.0), broken, voxels, 50.0) == 0);
+}
+
+TEST_CASE("bits that are there are returned while others are still being read")
+{
+    const std::vector<float> voxels = noise();
+    const auto source = std::make_shared<CountedSource>(voxels);
+    ThresholdBricks bricks(source);
+    const VoxelBox there{{3, 4, 5}, {40, 30, 30}}, far{{3, 4, 33}, {40, 30, 40}};
+    while (!bricks.get_ready(there, 50.0)) std::this_thread::yield();
+    source->is_silent = true;
+    CHECK_FALSE(bricks.get_ready(far, 50.0));
+    CHECK(bricks.get_ready(there, 50.0));
+    CHECK(wrong_bits(bricks.bits_in(there, 50.0), there, voxels, 50.0) == 0);
+    source->is_silent = false;
+    while (!bricks.get_ready(far, 50.0)) std::this_thread::yield();
+    CHECK(wrong_bits(bricks.bits_in(far, 50.0), far, voxels, 50.0) == 0);
 }
