@@ -323,11 +323,16 @@ glm::ivec3 brick_counts(const Size3& size)
     return glm::ivec3((size + (SIZE - 1)) / SIZE);
 }
 
+VoxelBox voxels_of_texels(const BrickKey& key, const Size3& volume)
+{
+    const Size3 begin = SIZE * Size3(key.brick) - APRON;
+    return {glm::max(begin, Size3(0)), glm::min(begin + TEXELS, size_of_level(volume, key.level))};
+}
+
 void BrickMaker::make(const BrickKey& key, BrickTexels& texels)
 {
-    const Size3 size = size_of_level(source_.info().size, key.level);
     const Size3 begin = SIZE * Size3(key.brick) - APRON;
-    const VoxelBox box{glm::max(begin, Size3(0)), glm::min(begin + TEXELS, size)};
+    const VoxelBox box = voxels_of_texels(key, source_.info().size);
     const Size3 extent = box.size();
     const auto row_bytes = size_t(extent.x) * bytes_of(source_.info().type);
     voxels_.resize(row_bytes * size_t(extent.y * extent.z));

@@ -30,6 +30,9 @@ struct BrickTexels {
 /// Number of bricks along each axis: ceil(size / BRICK_SIZE).
 glm::ivec3 brick_counts(const Size3& size);
 
+/// The voxels of a brick's level that its texels show: the brick and its apron, inside the volume.
+VoxelBox voxels_of_texels(const BrickKey& key, const Size3& volume);
+
 /// Builds single bricks of any level. Each thread must use its own object.
 class BrickMaker {
 public:

@@ -154,6 +154,8 @@ public:
 
     // ---- Changes
 
+    /// The bricks that renew() would read, for callers that must not wait for their voxels.
+    virtual std::vector<BrickKey> read_to_renew(std::span<const VoxelBox> changed) const = 0;
     /// Reports that the source's level 0 voxels in these boxes have changed; updates everything that depends on them.
     /// Frames submitted later show the change. Fails if voxels cannot be read.
     virtual void renew(std::span<const VoxelBox> changed) = 0;

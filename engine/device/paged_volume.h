@@ -80,6 +80,7 @@ public:
     void want_around(const std::vector<int>& reach) override;
     void prefer(const VoxelBox& voxels) override;
 
+    std::vector<BrickKey> read_to_renew(std::span<const VoxelBox> changed) const override;
     /// Reloads the bricks of all levels that depend on the voxels. Bricks on the device are reloaded at once. If there
     /// are too many, only the coarse bricks that always stay on the device are reloaded at once; the others are
     /// requested again like missing bricks. Bricks that are not on the device are reloaded when needed.
@@ -112,6 +113,7 @@ private:
     bool is_visited(size_t leaf) const { return is_reached_[leaf] || was_reached_[leaf]; }
     void visit(uint32_t leaf, bool is_before);
     void forget_unvisited();
+    std::vector<BrickKey> bricks_of_all_levels(std::span<const VoxelBox> changed) const;
     bool list_wants(std::vector<BrickKey>& keys);
     void needs_changed();
     bool place(const BrickKey& key, const BrickTexels& texels, bool for_region);

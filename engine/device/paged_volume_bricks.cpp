@@ -160,20 +160,33 @@ void PagedVolume::stage(const BrickKey& key, uint32_t slot, const BrickTexels& t
     atlas_.stage(slot, texels);
 }
 
-void PagedVolume::renew(std::span<const VoxelBox> changed)
+std::vector<BrickKey> PagedVolume::bricks_of_all_levels(std::span<const VoxelBox> changed) const
 {
     std::vector<BrickKey> keys;
     for (int level = 0; level < levels_; ++level)
         for (const BrickKey& key : bricks_that_see(changed, info().size, level)) keys.push_back(key);
+    return keys;
+}
+
+std::vector<BrickKey> PagedVolume::read_to_renew(std::span<const VoxelBox> changed) const
+{
+    std::vector<BrickKey> keys = bricks_of_all_levels(changed);
+    std::erase_if(keys, [this](const BrickKey& key) { return !slots_.contains(key); });
+    if (keys.size() > MAX_RENEWED_NOW)
+        std::erase_if(keys, [this](const BrickKey& key) { return !slots_.is_pinned(slots_.find(key).value()); });
+    return keys;
+}
+
+void PagedVolume::renew(std::span<const VoxelBox> changed)
+{
+    const std::vector<BrickKey> keys = bricks_of_all_levels(changed), read = read_to_renew(changed);
+    const std::unordered_set<BrickKey, BrickKeyHash> now(read.begin(), read.end());
     store_.renew(keys);
-    const auto there =
-        size_t(std::ranges::count_if(keys, [this](const BrickKey& key) { return slots_.contains(key); }));
     for (const BrickKey& key : keys) {
         note({key, BrickEvent::Kind::unread});
         const std::optional<uint32_t> slot = slots_.find(key);
         if (!slot) continue;
-        const bool now = there <= MAX_RENEWED_NOW || slots_.is_pinned(*slot);
-        if (const BrickStore::Texels texels = now ? store_.get(key) : nullptr) {
+        if (const BrickStore::Texels texels = now.contains(key) ? store_.get(key) : nullptr) {
             note(KnownBricks::read(key, texels->range));
             stage(key, *slot, *texels);
         } else {

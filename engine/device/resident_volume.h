@@ -61,6 +61,10 @@ public:
     void want_around(const std::vector<int>&) override {}
     void prefer(const VoxelBox&) override {}
 
+    std::vector<BrickKey> read_to_renew(std::span<const VoxelBox> changed) const override
+    {
+        return bricks_that_see(changed, info().size, 0);
+    }
     /// Waits for the reads; also waits for the device if many bricks changed.
     void renew(std::span<const VoxelBox> changed) override;
     void note_painted(const Mask& mask, std::span<const int64_t> bricks) override;

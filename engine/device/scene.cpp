@@ -174,7 +174,8 @@ void Scene::load_paged(const IntensityWindow& window, AtlasCodes codes, uint64_t
         .device_bytes = atlas_bytes(memory_, source_->info(), codes, options_.with_occlusion, reserved_bytes),
         .in_slices = options_.in_slices};
     source_ = with_levels(std::move(source_), options_.host_bytes, options_.progress);
-    offsets_ = std::make_shared<OffsetSource>(source_);
+    held_ = std::make_shared<HeldSource>(source_);
+    offsets_ = std::make_shared<OffsetSource>(held_);
     while (!volume_) {
         try {
             volume_ = std::make_unique<PagedVolume>(executor_, memory_, offsets_, window, paged);
@@ -193,7 +194,8 @@ void Scene::load_paged(const IntensityWindow& window, AtlasCodes codes, uint64_t
 bool Scene::load_resident(const IntensityWindow& window)
 {
     const AtlasCodes codes = codes_of(memory_, *source_, options_);
-    offsets_ = std::make_shared<OffsetSource>(source_);
+    held_ = std::make_shared<HeldSource>(source_);
+    offsets_ = std::make_shared<OffsetSource>(held_);
     try {
         if (options_.in_slices)
             volume_ = std::make_unique<ResidentVolume>(executor_, memory_, offsets_, window, codes, options_.threads,
@@ -380,10 +382,28 @@ void Scene::note_density(const DensityField& field, std::span<const VoxelBox> ch
     unshown_density_.insert(unshown_density_.end(), changed.begin(), changed.end());
 }
 
+/// Whether the voxels that renew() reads are in memory, or may be waited for.
+bool Scene::voxels_are_there()
+{
+    if (!reads_in_background_) return true;
+    std::vector<HeldSource::Part> parts;
+    for (const BrickKey& key : volume_->read_to_renew(unshown_density_))
+        parts.push_back({key.level, voxels_of_texels(key, info().size)});
+    return held_->hold(parts);
+}
+
 void Scene::renew_density()
 {
     if (unshown_density_.empty()) return;
-    volume_->renew(unshown_density_);
+    awaits_voxels_ = !voxels_are_there();
+    if (awaits_voxels_) return;
+    try {
+        volume_->renew(unshown_density_);
+    } catch (...) {
+        held_->release();
+        throw;
+    }
+    held_->release();
     for (const VoxelBox& box : std::exchange(unshown_density_, {})) {
         occlusion_.changed(box, gpu::BRICK_APRON);
         note_changed({glm::max(box.lower - RAISED_REACH, Size3(0)), glm::min(box.upper + RAISED_REACH, info().size)},

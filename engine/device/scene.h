@@ -21,6 +21,7 @@
 #include "engine/device/look_table.h"
 #include "engine/device/occlusion.h"
 #include "engine/device/surfaces.h"
+#include "engine/volume/held_source.h"
 #include "engine/volume/offset_source.h"
 
 namespace shvr {
@@ -84,6 +85,10 @@ public:
 
     // ---- Changes
 
+    /// Whether a change of offsets whose voxels must be read, from a network for example, is shown later instead of
+    /// waiting for them: by catch_up(), once they have been read in the background. Off at first.
+    void read_in_background(bool on) { reads_in_background_ = on; }
+    bool reads_in_background() const { return reads_in_background_; }
     /// Shows all paint and offsets of the document, and reserves memory for its trace. If memory is short, loads the
     /// volume again with fewer bricks. Must be called before anything else refers to this scene's volume. Fails if the
     /// budget cannot hold the document's content.
@@ -93,9 +98,11 @@ public:
     /// voxels cannot be read or memory is short; is_behind() is then true.
     bool show(const Document& document, std::span<const Change> changes);
     void show(const Document& document, const Touched& touched, const std::optional<VoxelBox>& within = {});
-    /// Whether paint or offsets shown are out of date because an update failed.
+    /// Whether paint or offsets shown are out of date because an update failed, or because voxels are being read.
     bool is_behind() const { return mask_->is_stale() || !unshown_density_.empty(); }
-    /// Retries updates that failed. Fails as `show` does.
+    /// Whether the reason is that voxels are being read in the background. Brushes would not see the latest offsets.
+    bool awaits_voxels() const { return awaits_voxels_; }
+    /// Retries updates that failed, and those whose voxels were being read. Fails as `show` does.
     void catch_up(const Document& document);
     /// Updates the mask in these bricks. `within`: a box that holds all changed voxels.
     void update_mask(const Mask& mask, std::span<const int64_t> bricks, const std::optional<VoxelBox>& within = {});
@@ -166,6 +173,7 @@ private:
     void note_changed(const VoxelBox& voxels, Cause cause);
     void note_mask(const Mask& mask, std::span<const int64_t> bricks, const std::optional<VoxelBox>& within = {});
     void note_density(const DensityField& field, std::span<const VoxelBox> changed);
+    bool voxels_are_there();
     void renew_density();
 
     gpu::Executor& executor_;
@@ -174,6 +182,7 @@ private:
     Options options_;
     VolumeStatistics statistics_;
     bool draws_finest_ = false;
+    std::shared_ptr<HeldSource> held_;       ///< without offsets
     std::shared_ptr<OffsetSource> offsets_;  ///< the source that volume_ reads from
     std::unique_ptr<ThresholdBricks> threshold_bricks_;
     std::unique_ptr<DeviceVolume> volume_;
@@ -189,7 +198,8 @@ private:
     std::optional<TraceLook> trace_look_;
     LookTables tables_;
     std::vector<Changed> changed_;
-    std::vector<VoxelBox> unshown_density_;  ///< boxes whose bricks could not be updated
+    std::vector<VoxelBox> unshown_density_;  ///< boxes whose bricks could not be updated yet
+    bool reads_in_background_ = false, awaits_voxels_ = false;
     std::vector<std::string> messages_;
 };
 

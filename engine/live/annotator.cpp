@@ -199,6 +199,16 @@ void Annotator::begin_stroke(const PaintOp& brush)
     strokes_.push_back(Stroke{.brush = brush, .query = RegionQuery(renderer_)});
 }
 
+void Annotator::begin_whole_stroke(const PaintOp& op)
+{
+    SHVR_CHECK(!stroke_is_open());
+    strokes_.push_back({.brush = op,
+                        .query = RegionQuery(renderer_),
+                        .positions = stroke_positions(op.path),
+                        .has_ended = true,
+                        .whole = nothing_yet(op)});
+}
+
 void Annotator::extend_stroke(const glm::dvec3& voxel)
 {
     SHVR_CHECK(stroke_is_open());
@@ -273,12 +283,14 @@ std::optional<VoxelBox> Annotator::advance_stroke()
         changed = paint_answer();
     }
     if (stroke.next < stroke.positions.size()) {
+        if (renderer_.scene().awaits_voxels()) return changed;  // brushes see all offsets painted before
         FrameOfRegions frame = frame_of_regions(stroke.brush, stroke.positions, stroke.next, renderer_.volume().info());
         if (frame.regions.empty())
             stroke.next = frame.end;
         else if (stroke.query.ask(stroke.brush, std::move(frame.regions), RegionQuery::Wait::no))
             stroke.asked_to = frame.end;  // else: nothing was submitted, since bricks are still being loaded
     } else if (stroke.has_ended) {
+        if (stroke.whole) changed = paint_whole();
         last_stroke_ = stroke.result;
         ++strokes_done_;
         strokes_.pop_front();
@@ -290,6 +302,11 @@ std::optional<VoxelBox> Annotator::paint_answer()
 {
     Stroke& stroke = strokes_.front();
     const std::vector<RegionAnswer> answers = stroke.query.answer();
+    if (stroke.whole) {
+        add(*stroke.whole, stroke.brush, answers);
+        stroke.next = stroke.asked_to;
+        return std::nullopt;
+    }
     Answered answered = nothing_yet(stroke.brush);
     add(answered, stroke.brush, answers);
     Records records = records_of(stroke.brush, answered);
@@ -312,6 +329,20 @@ std::optional<VoxelBox> Annotator::paint_answer()
     for (const RegionAnswer& answer : answers) box = united(box, answer.region.box);
     show(touched, box);
     return touched.raised.empty() ? box : reach_of_raised(box, document().mask.size());
+}
+
+/// Paints the answers of all regions of the first stroke, as one command.
+std::optional<VoxelBox> Annotator::paint_whole()
+{
+    Stroke& stroke = strokes_.front();
+    Records records = records_of(stroke.brush, *stroke.whole);
+    stroke.tally.add(document().mask, stroke.whole->selection, records.groups, records.offsets);
+    stroke.result = stroke.tally.result();
+    const Command* const command = work_->perform({label_of(stroke.brush), changes_of(std::move(records))});
+    if (!command) return std::nullopt;
+    const Touched touched = touched_by(document(), command->changes);
+    show(touched);
+    return VoxelBox{Size3(0), document().mask.size()};
 }
 
 void Annotator::show(const Touched& touched, const std::optional<VoxelBox>& within)
@@ -340,6 +371,10 @@ void Annotator::catch_up()
     } catch (const gpu::BudgetError&) {
         tries_to_show_ = MAX_TRIES;  // the picture stays behind until something changes
         throw;
+    }
+    if (renderer_.scene().awaits_voxels()) {
+        --tries_to_show_;
+        return;
     }
     ++revision_;
 }

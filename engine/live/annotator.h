@@ -76,6 +76,8 @@ public:
     /// strokes that are not painted yet are painted first, in order, so the user need not wait for the device.
     void begin_stroke(const PaintOp& brush);
     void extend_stroke(const glm::dvec3& voxel);
+    /// Begins and ends a stroke that `advance` paints as `paint` would: all regions see the volume as it is before.
+    void begin_whole_stroke(const PaintOp& op);
     /// Interrupts the stroke: nothing is painted between its last position and its next one.
     void lift_stroke()
     {
@@ -96,9 +98,10 @@ public:
     /// exhausted, a brush that is too large, failure of bricks or of the journal), drops the rest of the stroke and
     /// throws another error whose message says so.
     std::optional<VoxelBox> advance();
-    /// Whether the picture lags behind the annotation because an update failed; `advance` retries the update.
+    /// Whether the picture lags behind the annotation, because an update failed or its voxels are being read; `advance`
+    /// tries it again.
     bool is_behind() const { return renderer_.scene().is_behind() && tries_to_show_ < MAX_TRIES; }
-    /// Retries the failed update at once; fails if the retry fails.
+    /// Tries the update again at once; fails if that fails.
     void catch_up();
     /// Number of interactive strokes that were painted completely.
     uint64_t strokes_done() const { return strokes_done_; }
@@ -135,7 +138,8 @@ private:
         size_t asked_to = 0;               ///< end of the positions covered by the query in flight
         std::optional<glm::dvec3> last{};  ///< position up to which the stroke has been extended
         bool has_ended = false;
-        bool is_recorded = false;  ///< whether the last command of the history is this stroke
+        std::optional<Answered> whole{};  ///< answers so far, if all are painted together at the end
+        bool is_recorded = false;         ///< whether the last command of the history is this stroke
         StrokeTally tally{brush};
         StrokeResult result = tally.result();  ///< the painted part so far
         int failed_tries = 0;                  ///< consecutive
@@ -155,6 +159,7 @@ private:
     void drop_first_stroke();
     PaintPreview preview_of_answer(const PaintOp& op, const Answered& answered) const;
     std::optional<VoxelBox> paint_answer();
+    std::optional<VoxelBox> paint_whole();
     void show(const Touched& touched, const std::optional<VoxelBox>& within = {});
     void show(const Command& command);
     template <class Update>

@@ -119,8 +119,7 @@ Document::Document(Renderer& renderer, Read read, const View::Options& view_opti
     choose_for_volume(session);
     begin_with_turning();
     if (!is_script_) annotator.work().select_trace({});  // the next node is not linked with a node of earlier work
-    renderer.scene().show(annotator.document());
-    renderer.scene().show_surfaces(surfaces, annotator.document().trace, session.groups);
+    show_again(renderer);
     note_saved();
 }
 
@@ -176,6 +175,7 @@ void Document::load_again(Renderer& renderer)
 
 void Document::show_again(Renderer& renderer)
 {
+    renderer.scene().read_in_background(!is_script_ && leads_to_network(session.volume_path));
     renderer.scene().show(annotator.document());
     renderer.scene().show_surfaces(surfaces, annotator.document().trace, session.groups);
 }

@@ -73,10 +73,21 @@ void Painter::act(const Paint& action)
 
 void Painter::act(const PaintOp& op)
 {
-    if (document_->annotator.stroke_is_running()) fail("a stroke is being painted; expected it to have ended");
-    others_.record_settings();
-    document_->annotator.paint(in_session(op, document_->session));
+    Annotator& annotator = document_->annotator;
+    const bool is_queued = annotator.stroke_is_running() && !annotator.stroke_is_open() && paints_later() &&
+                           !others_.has_settings_to_record();
+    if (annotator.stroke_is_running() && !is_queued) fail("a stroke is being painted; expected it to have ended");
+    if (!is_queued) others_.record_settings();
+    const PaintOp stroke = in_session(op, document_->session);
+    if (paints_later()) return annotator.begin_whole_stroke(stroke);
+    annotator.paint(stroke);
     stroke_ended();
+}
+
+/// Whether the bricks of a stroke may have to come over a network, for which a window does not wait.
+bool Painter::paints_later() const
+{
+    return renderer_.scene().reads_in_background();
 }
 
 void Painter::extend_stroke()

@@ -45,6 +45,7 @@ private:
     void advance_stroke();
     bool tries_stroke(std::string& unpainted);
     void stroke_ended();
+    bool paints_later() const;
     std::string how_to_reach_this() const;
     void follow_preview();
 
