@@ -213,7 +213,9 @@ void transfer_fields(Fields& f, Session& session)
                              .is_required = true};
     const About preset_about{
         .meaning = "preset from `assets/transfer_functions`, fitted to the volume's intensities, instead of `points`",
-        .allowed = "`\"bundles\"`, `\"haze\"`, `\"heat\"`, `\"layers\"`, `\"surface\"`",
+        .allowed =
+            "`\"bone\"`, `\"bundles\"`, `\"cividis\"`, `\"fire\"`, `\"grey\"`, `\"haze\"`, `\"heat\"`, "
+            "`\"layers\"`, `\"magma\"`, `\"surface\"`, `\"viridis\"`",
         .standard = "none"};
     if (f.has("preset", !session.transfer_preset.empty())) {
         f.mention("points", points_about);

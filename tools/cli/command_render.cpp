@@ -211,9 +211,8 @@ void add_render(CLI::App& program)
                         "Picture to write: .png, .tif, or .pfm for linear light in 32-bit floats");
     command->add_option("--size", options->size, "Pixels, as in 512x384, or millimetres at --dpi, as in 85x60mm");
     command->add_option("--camera", options->camera, "A camera of the session, a side (front, top, ...) or JSON");
-    command->add_option(
-        "--tf", options->transfer_function,
-        "Transfer function: a preset (bundles, haze, heat, layers, surface), or a JSON file with its points");
+    command->add_option("--tf", options->transfer_function,
+                        "Transfer function: a preset (bundles, viridis, ...), or a JSON file with its points");
     command->add_flag(
         "--with-session", options->with_session,
         "Keep the session in the .png or .tif, so that it can be rendered again, as the window's pictures do");

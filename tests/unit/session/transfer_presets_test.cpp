@@ -67,6 +67,22 @@ TEST_CASE("a preset lies between where the air ends and where nine tenths of the
     CHECK(function.points()[2].opacity == 0.4);
 }
 
+TEST_CASE("colour maps become brighter and more opaque with the intensity")
+{
+    for (const char* name : {"bone", "cividis", "grey", "magma", "viridis"}) {
+        CAPTURE(name);
+        const TransferPreset preset = transfer_preset_named(name);
+        CHECK(preset.points.front().opacity == 0.0);
+        CHECK(preset.points.back().intensity == 1.0);
+        for (size_t i = 1; i < preset.points.size(); ++i) {
+            const glm::dvec3 weights(0.2126, 0.7152, 0.0722);
+            CHECK(glm::dot(preset.points[i].color, weights) > glm::dot(preset.points[i - 1].color, weights));
+            CHECK(preset.points[i].opacity > preset.points[i - 1].opacity);
+        }
+    }
+    CHECK(transfer_preset_named("fire").points.size() == 32);
+}
+
 TEST_CASE("a broken preset, and a name that there is not, are told in a sentence")
 {
     CHECK(refusal(R"({"note": "x.", "points": []})") == "p.json: key points is []; expected at least two points");
@@ -76,7 +92,8 @@ TEST_CASE("a broken preset, and a name that there is not, are told in a sentence
     CHECK(refusal(R"({"note": "x.", "points": [{"at": 0, "color": "#ffffff", "opacity": 2}]})")
               .starts_with("p.json: key points.0.opacity is 2; expected"));
     CHECK_THROWS_WITH(transfer_preset_named("nothing"),
-                      "transfer_function.preset is \"nothing\"; expected one of: bundles, haze, heat, layers, surface");
+                      "transfer_function.preset is \"nothing\"; expected one of: bone, bundles, cividis, fire, grey, "
+                      "haze, heat, layers, magma, surface, viridis");
 }
 
 TEST_CASE("what a person keeps comes back as it was, in the volume that it was made for")
