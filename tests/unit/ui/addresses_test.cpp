@@ -50,6 +50,16 @@ TEST_CASE("addresses: the chooser knows them from paths")
     CHECK(places(ADDRESS, {"s3://bucket/key", "/scans/x.nrrd"}).size() == 2);
 }
 
+TEST_CASE("a project is listed once, however it was opened")
+{
+    Preferences preferences;
+    preferences.recent = {"/scans/leaf-project/", "/scans/leaf-project"};  // as an earlier version kept them
+    for (const char* path : {"/scans/a.nrrd", "/scans/leaf-project/shvr/session.json", "/scans/b.session.json"})
+        preferences.note_opened(path);
+    CHECK(preferences.recent ==
+          std::vector<std::filesystem::path>{"/scans/b.session.json", "/scans/leaf-project", "/scans/a.nrrd"});
+}
+
 TEST_CASE("addresses: the list of what was opened keeps them, and the log of actions keeps no query")
 {
     Preferences preferences;
