@@ -6,6 +6,7 @@
 #include <GLFW/glfw3.h>
 
 #include "engine/workbench/edits/edit.h"
+#include "engine/workbench/models/preferences.h"
 #include "engine/workbench/sight/gestures.h"
 #include "engine/workbench/sight/hits.h"
 #include "ui/files/file_list.h"
@@ -18,7 +19,8 @@ namespace {
 
 constexpr double DEGREES_PER_HEIGHT = 180.0;  ///< a drag over the window's height turns the view by this angle
 constexpr double DOUBLE_CLICK_PIXELS = 5.0;
-constexpr double ZOOM_PER_STEP = 1.12;
+constexpr double ZOOM_PER_STEP = 1.12, RADIUS_PER_STEP = 1.1;
+constexpr double ZOOM_PER_HEIGHT = 8.0;  ///< a drag over the window's height zooms by this factor
 
 bool paints(Tool tool)
 {
@@ -104,7 +106,10 @@ void Viewport::press(const ButtonEvent& event, const When& when, const Model& mo
     const bool was_here = !was_elsewhere_ && event.at == last_;
     last_ = pressed_ = event.at;
     was_elsewhere_ = false;
-    if (event.button == GLFW_MOUSE_BUTTON_RIGHT && turns) {
+    const bool paints_right = turns && model.preferences.key_set == KeySet::thesis;
+    if (event.button == GLFW_MOUSE_BUTTON_RIGHT && turns && !paints_right) {
+        gesture_ = is_map ? Gesture::move_in_map : Gesture::zoom;
+    } else if (event.button == GLFW_MOUSE_BUTTON_RIGHT && turns) {
         // The pointer may have moved without an event since the probe last followed it.
         if (!is_map && !was_here) actions.emplace_back(ProbeTo{pane_, in_pane(event.at, model), true});
         gesture_ = Gesture::paint;
@@ -249,6 +254,9 @@ void Viewport::follow(const MoveEvent& event, bool ui_has_mouse, const Model& mo
             actions.emplace_back(Orbit{-DEGREES_PER_HEIGHT * heights.x, DEGREES_PER_HEIGHT * heights.y});
             break;
         case Gesture::move: actions.emplace_back(Move{{-heights.x, heights.y, 0.0}}); break;
+        case Gesture::zoom:
+            actions.emplace_back(Zoom{pane_, in_pane(pressed_, model), std::pow(ZOOM_PER_HEIGHT, -heights.y)});
+            break;
         case Gesture::move_in_map: actions.emplace_back(DragInMap{pane_, way}); break;
         case Gesture::paint: actions.emplace_back(ProbeTo{pane_, pixel, jumps}); break;
         case Gesture::stroke: actions.emplace_back(ProbeAlong{pane_, pixel, jumps}); break;
@@ -269,7 +277,9 @@ void Viewport::scroll(const ScrollEvent& event, const Model& model, Actions& act
     pane_ = pane_at(event.at, model);
     const Pane::Kind kind = kind_of_pane(model);
     const bool is_slice = kind == Pane::Kind::slice, has_control = event.mods & GLFW_MOD_CONTROL;
-    if (is_slice != has_control)  // in slices, or with Ctrl elsewhere, the wheel pushes the probe
+    if (event.mods & GLFW_MOD_SHIFT)
+        actions.emplace_back(ScaleProbe{std::pow(RADIUS_PER_STEP, event.steps)});
+    else if (is_slice != has_control)  // in slices, or with Ctrl elsewhere, the wheel pushes the probe
         actions.emplace_back(PushProbe{pane_, event.steps});
     else if (kind == Pane::Kind::map)
         actions.emplace_back(Move{{0.0, 0.0, HEIGHTS_PER_STEP * event.steps}});

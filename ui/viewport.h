@@ -11,13 +11,14 @@
 //   measure   clicks set the ends of a distance; a drag turns
 //
 //   no button          the probe follows in its plane; with paint, erase, trace and measure, it follows visible points
-//   right              turn tool: paint; otherwise turn           Shift + left     move
+//   right              turn tool: zoom; otherwise turn            Shift + left     move
 //   middle             turn tool: move; otherwise turn, with Shift move           Alt + left       turn
-//   wheel              zoom; with Ctrl push the probe away, or pull it closer
+//   wheel              zoom; with Ctrl push the probe away, or pull it closer; with Shift the size of the probe
 //
 // In a map, the gestures for turning and moving both move the camera, and the wheel moves it forward. In a slice, the
 // wheel moves the slice; the gestures for turning drag the cross, which moves the other slices; Ctrl + left changes
-// the contrast, and so does the right button with all tools but turn.
+// the contrast, and so does the right button with all tools but turn. With the keys of the thesis, the right button
+// paints in the turn tool.
 //
 // While the window of operations shows a cut, a drag with the left button draws its outline (outline_tool.h); Ctrl
 // changes between lasso and rectangle.
@@ -54,6 +55,7 @@ private:
         turn,
         move,
         move_in_map,
+        zoom,
         paint,    ///< at the probe, in its plane
         stroke,   ///< along the visible surface
         node,     ///< moves the pressed node

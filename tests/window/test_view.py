@@ -33,8 +33,8 @@ class View(Seen):
         # Look from elsewhere, then put the probe onto the ball and paint a stroke.
         self.turn(x, y)
         self.check_probe(x, y)
-        self.check_follows(lambda: self.do("mousedown", 3, pause_s=0), "paint_here")
-        self.check_follows(lambda: self.do("mousemove", x + 10, y, "mousemove", x + 20, y + 5, "mouseup", 3, pause_s=0),
+        self.check_follows(lambda: self.do("keydown", "f", pause_s=0), "paint_here")
+        self.check_follows(lambda: self.do("mousemove", x + 10, y, "mousemove", x + 20, y + 5, "keyup", "f", pause_s=0),
                            "paint_here")
         self.check_key("7", "set probe.group")
         self.check_stroke((x + 20, y + 5), (x - 30, y - 10))
@@ -125,7 +125,7 @@ class View(Seen):
     def test_paint_that_was_not_saved_is_saved_when_the_window_closes(self):
         session, x, y = self.open_ball()
         self.check_probe(x, y)
-        self.check_follows(lambda: self.do("click", 3, pause_s=0), "paint_here")
+        self.check_follows(lambda: self.do("key", "f", pause_s=0), "paint_here")
         report = self.finish()
         painted = report["voxels_in_group"]["3"]
         again = self.check_json("annotate", session, "--script", self.write_script("s.jsonl", [
@@ -184,7 +184,7 @@ class View(Seen):
         self.check_probe(x, y)
         self.check_key("F5", "set probe.preview")
         self.until(lambda: any(seen["text"].endswith("voxels would change") for seen in self.seen()), "preview")
-        self.check_follows(lambda: self.do("click", 3, pause_s=0), "paint_here")
+        self.check_follows(lambda: self.do("key", "f", pause_s=0), "paint_here")
         report = self.finish()
         self.assertGreater(report["previewed_voxels"], 50, report["messages"])
         self.assertEqual(report["previewed_voxels"], report["voxels_in_group"].get("3"))
@@ -221,7 +221,7 @@ class View(Seen):
         self.view(session, environment=keys)
         self.until(lambda: self.frame()["sharp"], "sharp picture")
         self.check_probe(*self.middle())
-        self.check_follows(lambda: self.do("click", 3, pause_s=0), "paint_here")
+        self.check_follows(lambda: self.do("key", "f", pause_s=0), "paint_here")
         self.see("Painted", "Status")
         journal = session.with_suffix(".journal")
         # Two cutting planes, each while its key is held: a step each, once the hand has rested.

@@ -209,8 +209,8 @@ void mouse_words(const Model& model)
     const bool is_over_pane = model.pointer && model.pointer->pane < model.panes.size();
     const Pane::Kind over = is_over_pane ? model.panes[model.pointer->pane].pane.kind : Pane::Kind::main;
     const bool cuts = outline_tool().is_on() && over != Pane::Kind::map;
-    const std::string words =
-        cuts ? "left: draw the outline of the cut, Shift + left: move" : mouse_in_words(model.tool(), over);
+    const std::string words = cuts ? "left: draw the outline of the cut, Shift + left: move"
+                                   : mouse_in_words(model.tool(), over, model.preferences.key_set);
     ImGui::SameLine(0.0f, ImGui::GetFontSize());
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("Mouse  %s", words.c_str());

@@ -10,9 +10,8 @@ namespace {
 
 constexpr ToolRow TOOL_ROWS[] = {
     {Tool::turn, "Turn", "tool_turn",
-     "Drag to turn the volume. The right button paints with the active group, and a double click puts the probe onto "
-     "what is seen.",
-     "turn", "paint"},
+     "Drag to turn the volume. The right button zooms, and a double click puts the probe onto what is seen.", "turn",
+     "zoom"},
     {Tool::paint, "Paint", "tool_paint",
      "Hold the left button to paint with the active group. The right button turns the volume.", "paint", "turn"},
     {Tool::erase, "Erase", "tool_erase",
@@ -49,15 +48,17 @@ std::string sentence_of(Tool tool)
     return sentence(row_of(tool).name, " (", mouse_in_words(tool), ")");
 }
 
-std::string mouse_in_words(Tool tool, Pane::Kind over)
+std::string mouse_in_words(Tool tool, Pane::Kind over, KeySet set)
 {
     const ToolRow& row = row_of(tool);
+    const char* const right = tool == Tool::turn && set == KeySet::thesis ? "paint" : row.right;
     if (over == Pane::Kind::map) return "left: turn, Shift + left or middle: move, wheel: closer or farther";
     if (over == Pane::Kind::slice && tool == Tool::turn)
-        return "left: move the cross, right: paint, middle: move, wheel: next slice, Ctrl + wheel: zoom";
+        return sentence("left: move the cross, right: ", right,
+                        ", middle: move, wheel: next slice, Ctrl + wheel: zoom");
     if (over == Pane::Kind::slice)
         return sentence("left: ", row.left, ", right: contrast, middle: move, wheel: next slice, Ctrl + wheel: zoom");
-    if (tool == Tool::turn) return sentence("left: ", row.left, ", right: ", row.right, ", middle: move, wheel: zoom");
+    if (tool == Tool::turn) return sentence("left: ", row.left, ", right: ", right, ", middle: move, wheel: zoom");
     return sentence("left: ", row.left, ", right or middle: ", row.right, ", wheel: zoom");
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "engine/workbench/models/model.h"
+#include "engine/workbench/models/preferences.h"
 
 namespace shvr::ui {
 
@@ -22,7 +23,8 @@ const ToolRow& row_of(Tool tool);
 
 /// Returns the message that is shown when the user selects the tool.
 std::string sentence_of(Tool tool);
-/// Describes buttons and wheel over a pane of kind `over`: "left: paint, right or middle: turn, wheel: zoom".
-std::string mouse_in_words(Tool tool, Pane::Kind over = Pane::Kind::main);
+/// Describes buttons and wheel over a pane of kind `over`, with a set of keys: "left: paint, right or middle: turn,
+/// wheel: zoom".
+std::string mouse_in_words(Tool tool, Pane::Kind over = Pane::Kind::main, KeySet set = KeySet::modern);
 
 }  // namespace shvr::ui

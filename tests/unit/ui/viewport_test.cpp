@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "engine/session/session_patch.h"
 #include "engine/workbench/actions/action_rows.h"
 #include "tests/support/model_world.h"
@@ -102,7 +104,10 @@ TEST_CASE("Each button means in each tool what the tool says")
     }
     for (const Tool tool : {Tool::paint, Tool::erase})
         CHECK(drag(tool, LEFT) == "probe_along paint_here probe_along probe_along paint_here");
-    CHECK(drag(Tool::turn, RIGHT) == "probe_to paint_here probe_to probe_to paint_here");
+    CHECK(drag(Tool::turn, RIGHT) == "zoom zoom");
+    Mouse as_in_the_thesis(Tool::turn);
+    as_in_the_thesis.world.preferences.key_set = KeySet::thesis;
+    CHECK(as_in_the_thesis.drag(RIGHT, 40.0, 40.0) == "probe_to paint_here probe_to probe_to paint_here");
     for (const Tool tool : {Tool::paint, Tool::erase, Tool::trace, Tool::select, Tool::measure}) {
         CAPTURE(TOOLS[size_t(tool)].name);
         CHECK(drag(tool, RIGHT) == "orbit orbit");
@@ -224,6 +229,7 @@ TEST_CASE("A motion that no hand makes lifts the brush, and so does the first af
     mouse.move(220.0, 40.0);
     CHECK(!jumps());
     // A stroke goes on from where its button went down.
+    mouse.world.preferences.key_set = KeySet::thesis;
     mouse.press(RIGHT, 390.0, 200.0);
     CHECK(jumps());
     mouse.move(380.0, 200.0);
@@ -232,13 +238,30 @@ TEST_CASE("A motion that no hand makes lifts the brush, and so does the first af
     CHECK(jumps());
 }
 
+TEST_CASE("An upward drag with the right button comes nearer, and Shift + wheel changes the brush in every pane")
+{
+    Mouse mouse(Tool::turn, true);
+    mouse.press(RIGHT, 40.0, 100.0);
+    mouse.move(40.0, 70.0);
+    REQUIRE(mouse.last.size() == 1);
+    CHECK(mouse.last[0].as<Zoom>()->factor == doctest::Approx(std::pow(8.0, 0.1)));
+    CHECK(mouse.last[0].as<Zoom>()->pixel == glm::dvec2(40.0, 100.0));
+    mouse.release(RIGHT, 40.0, 70.0);
+    for (const double x : {40.0, 300.0}) {
+        mouse.said.clear();
+        mouse.handle({ScrollEvent{2.0, SHIFT, {x, 40.0}}, mouse.now_s});
+        CHECK(mouse.said == "scale_probe");
+        CHECK(mouse.last[0].as<ScaleProbe>()->factor == doctest::Approx(1.21));
+    }
+}
+
 TEST_CASE("In a slice the cross is dragged, and the contrast with Ctrl or the right button")
 {
     for (const Tool tool : {Tool::turn, Tool::select, Tool::measure})
         CHECK(Mouse(tool, true).drag(LEFT, 300.0, 40.0) == "probe_to");
     for (const Tool tool : {Tool::paint, Tool::trace, Tool::select, Tool::measure})
         CHECK(Mouse(tool, true).drag(RIGHT, 300.0, 40.0) == "set set");
-    CHECK(Mouse(Tool::turn, true).drag(RIGHT, 300.0, 40.0) == "probe_to paint_here probe_to probe_to paint_here");
+    CHECK(Mouse(Tool::turn, true).drag(RIGHT, 300.0, 40.0) == "zoom zoom");
     CHECK(Mouse(Tool::paint, true).drag(LEFT, 300.0, 40.0) ==
           "probe_along paint_here probe_along probe_along paint_here");
     Mouse mouse(Tool::paint, true);
