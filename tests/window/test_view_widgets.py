@@ -50,8 +50,9 @@ class Widgets(Seen):
     def test_the_wheel_over_the_curve_shifts_all_points_and_slowly_with_shift(self):
         self.view_ball()
         x, y = WINDOW[0] - 160, round(self.see_at_rest("paint", "Side panel")["box"][3] + 3 * self.FONT)
+        self.see("255", "Side panel")   # the end of the axis
         self.do("mousemove", x, y, pause_s=0)
-        self.see_frames()
+        self.see("Intensity 1", "Side panel")   # what is under the pointer, near the middle
         self.check_follows(lambda: self.do("click", 4, pause_s=0), "set transfer_function.points")
         self.see_frames()
         self.do("keydown", "shift", pause_s=0)

@@ -286,6 +286,32 @@ void use_mouse(const CurveAxes& axes, const Model& model, WidgetState& state, Ac
 
 // ---- The panel's parts
 
+/// Draws the numbers of the horizontal axis below it or, while the mouse is over the curve, what is under the mouse.
+void axis_row(const CurveAxes& axes, const Model& model, bool is_hovered)
+{
+    const bool is_whole = !is_float(model.volume.type);
+    const auto words_of = [&](double intensity) {
+        char text[32];
+        std::snprintf(text, sizeof text, is_whole ? "%.0f" : "%.5g", intensity);
+        return std::string(text);
+    };
+    if (is_hovered) {
+        const double at = std::clamp(axes.intensity_at(ImGui::GetIO().MousePos.x), axes.lower, axes.upper);
+        const double intensity = is_whole ? std::round(at) : at;
+        char opacity[32];
+        std::snprintf(opacity, sizeof opacity, "%.4g", model.session.transfer_function.at(intensity).a);
+        return ImGui::TextUnformatted(sentence("Intensity ", words_of(intensity), ": opacity ", opacity).c_str());
+    }
+    constexpr double TICKS[] = {0.0, 0.5, 1.0};
+    const float left = ImGui::GetCursorScreenPos().x - ImGui::GetCursorPosX();
+    for (const double tick : TICKS) {
+        const std::string text = words_of(std::lerp(axes.lower, axes.upper, tick));
+        const float width = ImGui::CalcTextSize(text.c_str()).x;
+        if (tick > 0.0) ImGui::SameLine(std::lerp(axes.begin.x, axes.end.x, float(tick)) - float(tick) * width - left);
+        ImGui::TextDisabled("%s", text.c_str());
+    }
+}
+
 void curve(const Model& model, WidgetState& state, Actions& actions)
 {
     const auto [lowest, highest] = model.statistics.range();
@@ -299,8 +325,10 @@ void curve(const Model& model, WidgetState& state, Actions& actions)
                          .upper = state.range.upper};
     ImGui::InvisibleButton("curve", size, ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
     ImGui::SetItemUsingMouseWheel();
+    const bool is_hovered = ImGui::IsItemHovered() || ImGui::IsItemActive();
     draw(axes, model, state);
     use_mouse(axes, model, state, actions);
+    axis_row(axes, model, is_hovered);
 }
 
 std::string digits(double value)
