@@ -55,7 +55,7 @@ MAY_INCLUDE = {
     "engine/annotation/trace engine/annotation/writers engine/projects",
     "engine/session": "engine/base engine/touch engine/volume engine/look engine/annotation engine/annotation/files "
     "engine/annotation/trace engine/remote engine/formats engine/formats/zarr engine/projects",
-    "engine/movie": "engine/base engine/look engine/session",
+    "engine/movie": "engine/base engine/look engine/session engine/tasks",
     "engine/session/words": "engine/base engine/annotation engine/session",
     "engine/jobs": "engine/base",
     "engine/pages": "engine/base",
@@ -88,7 +88,8 @@ MAY_INCLUDE = {
     "engine/workbench/actions": "engine/base engine/remote engine/annotation/operations engine/annotation/script engine/session engine/tasks engine/workbench/models",
     "engine/workbench/lists": "engine/base engine/look engine/annotation/trace engine/session engine/live "
     "engine/workbench/models engine/workbench/actions",
-    "engine/workbench/forms": "engine/base engine/remote engine/tasks engine/workbench/models",
+    "engine/workbench/forms": "engine/base engine/remote engine/movie engine/tasks engine/workbench/models engine/workbench/actions "
+    "engine/workbench/sight",
     "engine/workbench/sight": "engine/base engine/look engine/annotation/operations engine/annotation/trace engine/session engine/session/words engine/workbench/models "
     "engine/workbench/lists",
     "engine/workbench/edits": "engine/session haptics engine/workbench/touch engine/workbench/models "
@@ -98,13 +99,13 @@ MAY_INCLUDE = {
     "engine/workbench/words": "engine/base engine/annotation/trace engine/annotation/work engine/session engine/session/words engine/tasks "
     "engine/workbench/models engine/workbench/bindings engine/workbench/forms",
     "engine/workbench/document": "engine/base engine/remote engine/annotation/trace engine/annotation/work engine/session engine/session/words engine/jobs "
-    "engine/picture engine/live haptics engine/workbench/touch engine/workbench/models engine/workbench/actions "
+    "engine/movie engine/picture engine/live haptics engine/workbench/touch engine/workbench/models engine/workbench/actions "
     "engine/workbench/sight",
     "engine/workbench/desk": "engine/base engine/session engine/jobs engine/workbench/touch engine/workbench/models "
     "engine/workbench/actions engine/workbench/lists engine/workbench/sight engine/workbench/bindings "
     "engine/workbench/document",
-    "engine/workbench/services": "engine/base engine/remote engine/look engine/annotation/operations engine/annotation/work engine/session engine/session/words engine/tasks engine/live "
-    "engine/workbench/models engine/workbench/actions engine/workbench/sight engine/workbench/edits "
+    "engine/workbench/services": "engine/base engine/remote engine/look engine/movie engine/annotation/operations engine/annotation/work engine/session engine/session/words engine/tasks engine/live "
+    "engine/workbench/models engine/workbench/actions engine/workbench/lists engine/workbench/sight engine/workbench/edits "
     "engine/workbench/words engine/workbench/document engine/workbench/desk",
     "engine/workbench": "engine/base engine/workbench/actions engine/workbench/lists engine/workbench/desk "
     "engine/workbench/services",

@@ -17,6 +17,7 @@
 
 #include "engine/base/atomic_writer.h"
 #include "engine/base/error.h"
+#include "engine/base/machine/programs.h"
 #include "engine/base/text.h"
 
 namespace shvr {
@@ -28,18 +29,6 @@ namespace fs = std::filesystem;
 constexpr const char *WEBM = ".webm", *MP4 = ".mp4";
 constexpr int MOVIE_IN_FFMPEG = 3;  ///< the number that the movie's file has in ffmpeg
 constexpr size_t PART_BYTES = size_t{1} << 20;
-
-bool is_installed(const std::string& program)
-{
-    const char* const path = std::getenv("PATH");
-    std::string_view rest = path ? path : "";
-    while (!rest.empty()) {
-        const size_t end = std::min(rest.find(':'), rest.size());
-        if (::access((fs::path(rest.substr(0, end)) / program).c_str(), X_OK) == 0) return true;
-        rest.remove_prefix(std::min(end + 1, rest.size()));
-    }
-    return false;
-}
 
 /// Opens a file without a name in `folder`, on whose disk the movie will lie.
 int open_nameless(const fs::path& folder)

@@ -30,7 +30,7 @@ STAYS_OPEN = {"Turn the view", "Move the view", "Distance blending", "Clip plane
 AGAIN = {"full_screen", "side_panels", "tool_bar", "volume", "meshes", "guide", "let_go"}
 ESCAPED = {"help", "preferences", "messages", "palette", "passes", "open", "focus_panels", "focus_menu", "save_as",
            "open_with_options", "correct_spacing", "import_scan", "export_work", "label_parts", "compare",
-           "load_annotation", "operate"}
+           "load_annotation", "operate", "figure", "movie"}
 
 
 class MenuWalk(Seen):

@@ -100,17 +100,20 @@ class Photographs(Seen):
         self.open_scan(session, "--size", "{}x{}".format(*(round(scale * side) for side in self.size)),
                        preferences={"scale": scale, "theme": theme, "layout": {"panels": panels}, "hints_seen": 3})
         self.photograph("panels")
-        for name, chord in (("help", "F1"), ("preferences", "Ctrl+,"), ("palette", "Ctrl+Shift+P"), ("open", "Ctrl+O")):
+        for name, chord, window in (("help", "F1", "Keys and mouse"), ("preferences", "Ctrl+,", "Preferences"),
+                                    ("palette", "Ctrl+Shift+P", "Find anything"), ("open", "Ctrl+O", "Open a volume")):
             self.press(chord)
+            self.see("", window)
             self.photograph(name)
             self.press("Escape")
-            self.do(pause_s=0.2)
+            self.see_no_more("", window)
         for arrangement, chord in (("stereo", "Shift+F11"), ("overview", "F9"), ("slices", "F6")):
             self.press(chord)
             self.photograph(arrangement)
         self.press("F10")
         for entry in ("Save as...", "Open with options...", "Correct the spacing...", "Import as project...",
-                      "Export...", "Label connected parts...", "Compare with a reference...", "Load annotation..."):
+                      "Export...", "Label connected parts...", "Compare with a reference...", "Load annotation...",
+                      "Figure...", "Movie..."):
             self.click_on("File", "##MainMenuBar")
             self.click_on(entry, "##Menu_00")
             self.see("Cancel")

@@ -79,6 +79,8 @@ void file_menu(const Model& model, Actions& actions)
     if (model.is_open)
         hint("A mask, offsets, a trace or a transfer function, into this scan. Or drop it on the window.");
     ImGui::Separator();
+    shortcut_item("figure", model, actions);
+    shortcut_item("movie", model, actions);
     shortcut_item("screenshot", model, actions);
     shortcut_item("large_screenshot", model, actions);
     shortcut_item("screenshot_marks", model, actions, model.session.interaction.screenshot_marks);

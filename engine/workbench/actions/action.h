@@ -12,6 +12,7 @@
 #include "engine/workbench/actions/looking_actions.h"
 #include "engine/workbench/actions/measuring_actions.h"
 #include "engine/workbench/actions/painting_actions.h"
+#include "engine/workbench/actions/picture_actions.h"
 #include "engine/workbench/actions/probe_actions.h"
 #include "engine/workbench/actions/settings_actions.h"
 #include "engine/workbench/actions/tracing_actions.h"
@@ -34,8 +35,8 @@ using ActionRows =
                std::remove_const_t<decltype(SETTINGS_ACTIONS)>, std::remove_const_t<decltype(PROBE_ACTIONS)>,
                std::remove_const_t<decltype(PAINTING_ACTIONS)>, std::remove_const_t<decltype(GROUP_ACTIONS)>,
                std::remove_const_t<decltype(TRACING_ACTIONS)>, std::remove_const_t<decltype(MEASURING_ACTIONS)>,
-               std::remove_const_t<decltype(WORK_ACTIONS)>, std::remove_const_t<decltype(WINDOW_ACTIONS)>,
-               std::remove_const_t<decltype(HAND_ACTIONS)>>::Type;
+               std::remove_const_t<decltype(WORK_ACTIONS)>, std::remove_const_t<decltype(PICTURE_ACTIONS)>,
+               std::remove_const_t<decltype(WINDOW_ACTIONS)>, std::remove_const_t<decltype(HAND_ACTIONS)>>::Type;
 
 /// Whether one of the tables has a row for the struct `Kind`.
 template <class Kind, class Rows = ActionRows>

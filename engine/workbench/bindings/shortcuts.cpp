@@ -354,6 +354,8 @@ constexpr Shortcut SHORTCUTS[] = {
      {"Shift+F12", "Ctrl+P"}},
     both("screenshot_marks", WORK_KEYS, "Scale bar, axes, groups in screenshots", Mode::tap,
          toggle_drawn<&InteractionSettings::screenshot_marks>, ""),
+    both("figure", WORK_KEYS, "Figure...", Mode::tap, show_dialog<Dialog::figure>, ""),
+    both("movie", WORK_KEYS, "Movie...", Mode::tap, show_dialog<Dialog::movie>, ""),
     both("update_occlusion", WORK_KEYS, "Update ambient occlusion", Mode::tap, plain<UpdateOcclusion>, "F8"),
     {"help",
      WORK_KEYS,

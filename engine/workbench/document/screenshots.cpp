@@ -12,7 +12,7 @@ std::filesystem::path Screenshots::free_path(const std::filesystem::path& stem) 
 {
     for (int number = 1;; ++number) {
         std::filesystem::path path = sentence(stem.string(), "-view-", number, ".png");
-        if (!std::filesystem::exists(path) && !(large_ && path == large_path_)) return path;
+        if (!std::filesystem::exists(path) && !(large_ && path == large_->path())) return path;
     }
 }
 
@@ -20,9 +20,10 @@ void Screenshots::take_large(const std::filesystem::path& stem, Renderer& render
                              const Camera& camera, const RenderOptions& options, const Texts& texts, Figure figure)
 {
     large_.reset();
-    large_path_ = free_path(stem);
-    const auto over = [figure = std::move(figure)](ImageF& rows, uint32_t first_row) { draw(figure, rows, first_row); };
-    large_ = std::make_unique<PictureFile>(large_path_, renderer, session, camera, options, texts(large_path_), over);
+    const std::filesystem::path path = free_path(stem);
+    large_ = std::make_unique<PictureShot>(
+        path, renderer, session, camera, options, texts(path), std::move(figure),
+        PictureShot::Words{.name = "large screenshot", .said = "Screenshot: " + path.string()});
 }
 
 Screenshots::Turn Screenshots::advance(Screen& screen, const std::filesystem::path& stem, bool is_still,
@@ -48,18 +49,11 @@ Screenshots::Turn Screenshots::advance(Screen& screen, const std::filesystem::pa
 Screenshots::Turn Screenshots::advance_large()
 {
     if (large_->is_writing()) return {};
-    std::unique_ptr<PictureFile> picture = std::move(large_);  // dropped here if it fails
-    if (picture->is_committing()) {
-        picture->commit();
-        return {.said = "Screenshot: " + large_path_.string(), .progress = {}};
-    }
-    if (picture->is_drawn())
-        picture->begin_commit();
-    else
-        picture->step(false);
-    const int percent = int(100.0 * picture->progress());
-    large_ = std::move(picture);
-    return {.said = {}, .progress = sentence("Large screenshot: ", percent, " %")};
+    std::unique_ptr<Shot> shot = std::move(large_);  // dropped here if it fails
+    shot->step();
+    if (shot->is_done()) return {.said = shot->said(), .progress = {}};
+    large_ = std::move(shot);
+    return {.said = {}, .progress = large_->progress_in_words()};
 }
 
 void Screenshots::write(Image8 image, const std::filesystem::path& stem, const Texts& texts, Figure figure)

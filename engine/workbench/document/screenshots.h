@@ -12,6 +12,7 @@
 
 #include "engine/live/screen.h"
 #include "engine/picture/picture_file.h"
+#include "engine/workbench/document/shots.h"
 #include "engine/workbench/sight/figure.h"
 
 namespace shvr::ui {
@@ -25,12 +26,13 @@ public:
     /// Begins a large picture. `stem`: see advance(). `figure`: drawn over it. Fails if the file cannot be written.
     void take_large(const std::filesystem::path& stem, Renderer& renderer, const Session& session, const Camera& camera,
                     const RenderOptions& options, const Texts& texts, Figure figure);
-    /// Cancels a large picture in progress. Call this before its volume changes or closes.
+    /// Begins a figure or a movie, and cancels the large picture in progress, if any.
+    void take(std::unique_ptr<Shot> shot) { large_ = std::move(shot); }
+    /// Cancels a large picture, a figure or a movie in progress. Call this before its volume changes or closes.
     void drop_large() { large_.reset(); }
     bool has_large() const { return large_ != nullptr; }
-    /// Returns the path of the large picture in progress.
-    const std::filesystem::path& large_path() const { return large_path_; }
-    double progress() const { return large_ ? large_->progress() : 0.0; }
+    /// Returns the large picture, figure or movie in progress; null: none.
+    const Shot* large() const { return large_.get(); }
     bool is_writing() const { return written_.valid(); }
 
     struct Turn {
@@ -50,8 +52,7 @@ private:
     Turn advance_large();
 
     bool is_wanted_ = false;
-    std::unique_ptr<PictureFile> large_;  ///< in progress
-    std::filesystem::path large_path_;
+    std::unique_ptr<Shot> large_;       ///< in progress
     std::future<std::string> written_;  ///< message about it
 };
 

@@ -18,6 +18,8 @@ enum class Dialog : uint8_t {
     export_work,
     label,
     compare,
+    figure,
+    movie,
     operation  ///< a window: the picture can be turned while it is shown
 };
 inline constexpr Spelling<Dialog> DIALOGS[] = {
@@ -25,7 +27,8 @@ inline constexpr Spelling<Dialog> DIALOGS[] = {
     {Dialog::load, "load"},          {Dialog::save_as, "save_as"},
     {Dialog::spacing, "spacing"},    {Dialog::import_scan, "import"},
     {Dialog::export_work, "export"}, {Dialog::label, "label"},
-    {Dialog::compare, "compare"},    {Dialog::operation, "operation"}};
+    {Dialog::compare, "compare"},    {Dialog::operation, "operation"},
+    {Dialog::figure, "figure"},      {Dialog::movie, "movie"}};
 constexpr std::span<const Spelling<Dialog>> spellings_of(Dialog)
 {
     return DIALOGS;
@@ -35,7 +38,8 @@ constexpr std::span<const Spelling<Dialog>> spellings_of(Dialog)
 constexpr bool needs_document(Dialog dialog)
 {
     return dialog == Dialog::load || dialog == Dialog::save_as || dialog == Dialog::spacing ||
-           dialog == Dialog::export_work || dialog == Dialog::label || dialog == Dialog::operation;
+           dialog == Dialog::export_work || dialog == Dialog::label || dialog == Dialog::operation ||
+           dialog == Dialog::figure || dialog == Dialog::movie;
 }
 
 }  // namespace shvr::ui

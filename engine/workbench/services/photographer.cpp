@@ -1,14 +1,56 @@
 #include "engine/workbench/services/photographer.h"
 
 #include <cstdlib>
+#include <sstream>
 
+#include "engine/base/machine/clipboard.h"
+#include "engine/base/text.h"
+#include "engine/movie/movie.h"
 #include "engine/session/picture_session.h"
+#include "engine/session/words/number_words.h"
+#include "engine/workbench/desk/declined.h"
+#include "engine/workbench/lists/group_list.h"
+#include "engine/workbench/sight/print_size.h"
 
 namespace shvr::ui {
 
 namespace {
 
-constexpr Jobs::Number NUMBER_OF_LARGE = (Jobs::Number{1} << 49) + 1;  // no job has it
+constexpr uint32_t PART_PIXELS = 96;  ///< bounds the delay when the user resumes
+
+std::vector<std::string> views_named_in(const std::string& text)
+{
+    std::vector<std::string> lines;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);)
+        if (!line.empty()) lines.push_back(line);
+    return lines;
+}
+
+/// Returns "1004 x 756 pixels, 85 x 64 mm at 300 dots per inch".
+std::string size_of_figure(const glm::uvec2& pixels, double dots_per_inch)
+{
+    std::string words = sentence(pixels.x, " x ", pixels.y, " pixels");
+    if (dots_per_inch == 0.0) return words;
+    const glm::dvec2 mm = glm::round(glm::dvec2(pixels) * MM_PER_INCH / dots_per_inch * 10.0) / 10.0;
+    return words + sentence(", ", mm.x, " x ", mm.y, " mm at ", dots_per_inch, " dots per inch");
+}
+
+/// Copies a picture to the clipboard, and removes its file.
+void hand_over(const std::filesystem::path& file)
+{
+    const auto remove = [&] {
+        std::error_code ignored;
+        std::filesystem::remove(file, ignored);
+    };
+    try {
+        copy_png(file);
+    } catch (...) {
+        remove();
+        throw;
+    }
+    remove();
+}
 
 }  // namespace
 
@@ -22,8 +64,10 @@ void Photographer::advance()
 void Photographer::drop_large(const char* by)
 {
     if (!screenshots_.has_large()) return;
+    const std::string kept = screenshots_.large()->kept();
+    const std::string name = screenshots_.large()->name();
     screenshots_.drop_large();
-    say(sentence("The large screenshot was cancelled by ", by), Weight::warning);
+    say(sentence("The ", name, " was cancelled by ", by, kept.empty() ? "" : "; ", kept), Weight::warning);
 }
 
 void Photographer::follow_screenshots()
@@ -47,18 +91,20 @@ std::filesystem::path Photographer::stem() const
 
 bool Photographer::cancel(Jobs::Number number)
 {
-    if (number != NUMBER_OF_LARGE || !has_large()) return false;
+    if (number != PICTURE_JOB || !has_large()) return false;
+    const std::string kept = screenshots_.large()->kept();
+    const std::string name = screenshots_.large()->name();
     screenshots_.drop_large();
-    say("Cancelled: the large screenshot");
+    say(sentence("Cancelled: the ", name, kept.empty() ? "" : "; ", kept),
+        kept.empty() ? Weight::done : Weight::warning);
     return true;
 }
 
 void Photographer::add_loading(std::vector<Jobs::State>& states) const
 {
     if (!document_ || !has_large()) return;
-    states.push_back({.number = NUMBER_OF_LARGE,
-                      .what = "drawing " + short_name(screenshots_.large_path()),
-                      .fraction = screenshots_.progress()});
+    const Shot& shot = *screenshots_.large();
+    states.push_back({.number = PICTURE_JOB, .what = shot.what(), .fraction = shot.progress()});
 }
 
 void Photographer::act(const Screenshot& action)
@@ -68,15 +114,98 @@ void Photographer::act(const Screenshot& action)
         screenshots_.take();
         return say("The screenshot will be taken when the picture is sharp");
     }
+    if (has_large()) decline(capitalised(IS_DRAWING_PICTURE));
     Session session = document_->saved_session();
     session.render.size = others_.pixels() * session.interaction.screenshot_scale;
     RenderOptions options;
-    options.part_pixels = 96;  // bounds the delay when the user resumes
+    options.part_pixels = PART_PIXELS;
     screenshots_.take_large(stem(), renderer_, session, document_->camera, options,
                             texts_of_picture(session.render.size, false),
                             figure_of_picture(session.interaction.screenshot_scale));
     say(sentence("A screenshot of ", session.render.size.x, " x ", session.render.size.y,
                  " pixels is made in the background"));
+}
+
+glm::uvec2 Photographer::pixels_of(const glm::ivec2& asked) const
+{
+    return asked.x > 0 && asked.y > 0 ? glm::uvec2(asked) : others_.pixels();
+}
+
+/// Returns what figures and movies show: all but the probe.
+Session Photographer::session_of_pictures(const glm::uvec2& pixels) const
+{
+    Session session = document_->saved_session();
+    session.render.size = pixels;
+    session.render.background.a = 1.0;
+    return session;
+}
+
+std::filesystem::path Photographer::project_of_pictures() const
+{
+    const bool has_project = document_->has_session_file() || document_->annotator.work().journal().bytes > 0;
+    return has_project ? document_->session_path : std::filesystem::path();
+}
+
+Figure Photographer::drawn_elements(const FigureElements& elements, const Session& session, const Camera& camera,
+                                    std::vector<std::string>& left_out) const
+{
+    if (elements.is_empty() || !options_.draw_texts) return {};
+    const VolumeInfo& volume = document_->volume();
+    const std::vector<Pane> panes =
+        panes_of(session.view, camera, session.render.size, volume, document_->probe_voxel());
+    const shvr::Document& annotation = document_->annotator.document();
+    const std::vector<uint8_t> groups = drawn_groups(session, annotation.mask.voxels_by_group(), annotation.trace);
+    return figure_of(elements, {session, volume, panes, groups}, options_.draw_texts, left_out);
+}
+
+void Photographer::act(const FigureTask& task)
+{
+    if (has_large()) decline(capitalised(IS_DRAWING_PICTURE));
+    const std::filesystem::path path = task.is_copied ? path_for_clipboard() : task.path;
+    Session session = session_of_pictures(pixels_of(task.pixels));
+    if (task.is_transparent) session.render.background.a = 0.0;
+    FigureElements elements{.scale_bar = task.has_scale_bar,
+                            .color_bar = task.has_color_bar,
+                            .legend = task.has_legend,
+                            .axes = task.has_axes,
+                            .title = task.title};
+    for (const TextInFigure& text : task.texts) elements.texts.push_back({text.voxel, text.text});
+    std::vector<std::string> left_out;
+    Figure figure = drawn_elements(elements, session, document_->camera, left_out);
+    PictureTexts texts =
+        shvr::texts_of_picture(session, document_->camera, path, project_of_pictures(), PictureProbe::none);
+    if (task.dots_per_inch > 0.0) texts.emplace_back(PICTURE_DPI, digits_of(task.dots_per_inch));
+    const std::string size = size_of_figure(session.render.size, task.dots_per_inch);
+    PictureShot::Words words{.name = "figure",
+                             .said = task.is_copied ? sentence("Copied the picture to the clipboard (", size, ")")
+                                                    : sentence("Figure: ", path.string(), " (", size, ")")};
+    for (const std::string& each : left_out) words.said += "; " + each;
+    screenshots_.take(std::make_unique<PictureShot>(
+        path, renderer_, session, document_->camera, RenderOptions{.part_pixels = PART_PIXELS}, texts,
+        std::move(figure), words, task.is_copied ? PictureShot::Then(hand_over) : PictureShot::Then()));
+    say(sentence("A figure of ", size, " is drawn in the background"));
+}
+
+void Photographer::act(const MovieTask& task)
+{
+    if (has_large()) decline(capitalised(IS_DRAWING_PICTURE));
+    const Session session = session_of_pictures(pixels_of(task.pixels));
+    std::vector<MovieView> views;
+    for (const std::string& name : views_named_in(task.views))
+        views.push_back({name, session, camera_named(session, name, document_->volume())});
+    if (views.empty()) views.push_back({"the present view", session, document_->camera});
+    Movie movie(std::move(views), task.turntable_degrees, task.frames, document_->volume());
+    const FigureElements elements{.scale_bar = task.has_scale_bar};
+    const auto figure = [this, elements, session](const Camera& camera) {
+        std::vector<std::string> left_out;
+        return drawn_elements(elements, session, camera, left_out);
+    };
+    const auto texts = [this, session](const Camera& camera, const std::filesystem::path& frame) {
+        return shvr::texts_of_picture(session, camera, frame, project_of_pictures(), PictureProbe::none);
+    };
+    screenshots_.take(std::make_unique<MovieShot>(task.path, std::move(movie), task.frames_per_second, renderer_,
+                                                  RenderOptions{.part_pixels = PART_PIXELS}, figure, texts));
+    say(sentence("A movie of ", counted(task.frames, "frame"), " is drawn in the background"));
 }
 
 /// Returns the marks to draw over a picture `scale` times as large as the window; empty if the user wants no marks.

@@ -1,8 +1,10 @@
 #pragma once
-// Takes screenshots: of the view as shown, or larger ones, which are rendered in the background.
+// Takes screenshots: of the view as shown, or larger ones, which are rendered in the background as figures and movies
+// are.
 
 #include "engine/workbench/desk/service.h"
 #include "engine/workbench/document/screenshots.h"
+#include "engine/workbench/sight/figure_elements.h"
 
 namespace shvr::ui {
 
@@ -14,6 +16,8 @@ public:
     };
     Photographer(Desk& desk, Others others);
     void act(const Screenshot& action);
+    void act(const FigureTask& task);
+    void act(const MovieTask& task);
 
     void advance() override;
     bool has_large() const { return screenshots_.has_large(); }
@@ -34,6 +38,11 @@ public:
 
 private:
     void follow_screenshots();
+    glm::uvec2 pixels_of(const glm::ivec2& asked) const;
+    Session session_of_pictures(const glm::uvec2& pixels) const;
+    Figure drawn_elements(const FigureElements& elements, const Session& session, const Camera& camera,
+                          std::vector<std::string>& left_out) const;
+    std::filesystem::path project_of_pictures() const;
     Figure figure_of_picture(uint32_t scale) const;
     Screenshots::Texts texts_of_picture(const glm::uvec2& pixels, bool shows_probe) const;
 

@@ -172,6 +172,8 @@ const Row ROWS[] = {
      "camera, file preferences.json, open, place, probe, render, transfer_function, view"},
     {R"({"op":"screenshot"})", "file scan-view-1.png"},
     {R"({"op":"screenshot","large":true})", "file scan-view-1.png"},
+    {R"({"op":"figure","path":"FOLDER/figure.tif","pixels":[40,30]})", "file figure.tif"},
+    {R"({"op":"movie","path":"FOLDER/frames","turntable_degrees":90,"frames":2,"pixels":[40,30]})", ""},
     {R"({"op":"work_on_copy"})",
      "cameras, file preferences.json, file scan-copy.json, file scan-copy.labels.zarr, open, undo",
      {STROKE}},

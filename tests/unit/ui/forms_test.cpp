@@ -8,9 +8,11 @@
 #include "engine/tasks/import_estimate.h"
 #include "engine/workbench/actions/action_rows.h"
 #include "engine/workbench/forms/export_form.h"
+#include "engine/workbench/forms/figure_form.h"
 #include "engine/workbench/forms/form_names.h"
 #include "engine/workbench/forms/import_form.h"
 #include "engine/workbench/forms/label_form.h"
+#include "engine/workbench/forms/movie_form.h"
 #include "engine/workbench/forms/voxel_size.h"
 #include "engine/workbench/words/task_words.h"
 #include "tests/support/model_world.h"
@@ -217,4 +219,84 @@ TEST_CASE("what a task has done is told with its folder, counts and integers as 
     CHECK(labelled_in_words({.found = 1, .largest_voxels = 1}, task) ==
           "Found 1 connected part at or above 1048576, the largest of 1 voxel; the labels are in /scans/parts.zarr");
     CHECK(labelled_in_words({}, LabelTask{}) == "Found 0 connected parts at or above 0");
+}
+
+TEST_CASE("a figure has the pixels of its size on paper, and keeps them in another unit")
+{
+    SizeForm size{.width = 85.0, .height = 60.0, .dots_per_inch = 300.0};
+    CHECK(pixels_of(size) == glm::ivec2(1004, 709));
+    change_unit(size, false);
+    CHECK(size.width == 1004.0);
+    CHECK(pixels_of(size) == glm::ivec2(1004, 709));
+    change_unit(size, true);
+    CHECK(size.width == 85.0);
+    CHECK(size.height == 60.0);
+    CHECK(pixels_of({.width = 0.0, .height = 10.0}) == glm::ivec2(0));
+    CHECK(pixels_of({.width = 10.0, .height = 10.0, .dots_per_inch = 1.0}) == glm::ivec2(0));
+    CHECK(pixels_of({.width = 65537.0, .height = 10.0, .is_in_mm = false}) == glm::ivec2(0));
+}
+
+TEST_CASE("a figure is suggested next to the scan, in the ending of the last one, with a text that was only typed")
+{
+    Scanned world;
+    world.model.probe_voxel = glm::dvec3(1.0, 2.0, 3.0);
+    FigureForm form = suggested_figure(world.model, {.path = "/else/a.tif"});
+    CHECK(form.path == "/scans/leaf-figure.tif");
+    form.next_text = "pith";
+    const FigureTask task = task_of(form, "/scans");
+    CHECK(task.path == "/scans/leaf-figure.tif");
+    CHECK(task.has_scale_bar);
+    CHECK(task.dots_per_inch == 300.0);
+    REQUIRE(task.texts.size() == 1);
+    CHECK(task.texts[0].text == "pith");
+    CHECK(task.texts[0].voxel == world.model.probe_voxel);
+    form.size.is_in_mm = false;
+    CHECK(task_of(form, "/scans").dots_per_inch == 0.0);
+    CHECK(why_not(form).empty());
+    form.size.height = 0.0;
+    CHECK(why_not(form).starts_with("the size is 85 x 0 pixels; expected 1 to 65536 pixels"));
+}
+
+TEST_CASE("a figure and a movie come back from their lines, and say what they cannot be")
+{
+    Scanned world;
+    FigureTask figure{.path = "/a/b.png", .pixels = {10, 20}, .has_axes = true};
+    figure.texts.push_back({{1.0, 2.0, 3.0}, "pith"});
+    const Action read = read_action(line_of(Action(figure)), "line");
+    CHECK(line_of(read) == line_of(Action(figure)));
+    CHECK(read.as<FigureTask>()->texts[0].text == "pith");
+    figure.path = "/a/b.jpg";
+    CHECK(why_not(world.model, Action(figure)) ==
+          "the figure's name is \"b.jpg\"; expected one that ends in .png or .tif");
+    const MovieTask still{.path = "/a/m.webm"};
+    CHECK(why_not(world.model, Action(still)).find("stands still") != std::string::npos);
+    CHECK(why_not(world.model, Action(MovieTask{.path = "/a/m.webm", .turntable_degrees = 360.0})).empty());
+    CHECK(why_not(world.model, Action(MovieTask{.path = "/a/m.webm", .views = "front\ntop"})).empty());
+}
+
+TEST_CASE("a movie has the frames of its seconds, and the ending of its format")
+{
+    Scanned world;
+    MovieForm form = suggested_movie(world.model, {});
+    CHECK(form.path == "/scans/leaf-movie.webm");
+    choose_kind(form, MovieKind::frames);
+    CHECK(form.path == "/scans/leaf-movie");
+    choose_kind(form, MovieKind::mp4);
+    CHECK(task_of(form, "/scans").path == "/scans/leaf-movie.mp4");
+    form.seconds = 2.5;
+    CHECK(task_of(form, "/scans").frames == 75);
+    CHECK(task_of(form, "/scans").turntable_degrees == 360.0);
+    CHECK(why_not(form).empty());
+    form.more.pixels.x = 641;
+    CHECK(why_not(form) == "the size is 641 x 720 pixels; expected even numbers from 2");
+    choose_kind(form, MovieKind::frames);
+    CHECK(why_not(form).empty());
+    form.goes_through_views = true;
+    CHECK(why_not(form).starts_with("no way is chosen"));
+    form.views = {"front", "top"};
+    CHECK(why_not(form).empty());
+    CHECK(task_of(form, "/scans").views == "front\ntop");
+    CHECK(task_of(form, "/scans").turntable_degrees == 0.0);
+    form.seconds = 0.0;
+    CHECK(why_not(form).find("expected 1 to 100000 frames") != std::string::npos);
 }

@@ -5,11 +5,11 @@
 
 #include "engine/base/text.h"
 #include "engine/live/previewer.h"
+#include "engine/movie/frame_folder.h"
 #include "engine/movie/movie.h"
 #include "engine/movie/movie_encoder.h"
 #include "engine/picture/picture_file.h"
 #include "engine/session/picture_session.h"
-#include "tools/cli/movie/frame_folder.h"
 #include "tools/cli/movie/movie_views.h"
 
 namespace shvr::cli {

@@ -17,6 +17,7 @@
 #include "ui/files/asked.h"
 #include "ui/files/file_list.h"
 #include "ui/panels/dialogs/field_widgets.h"
+#include "ui/panels/dialogs/picture_rows.h"
 #include "ui/panels/dialogs/task_rows.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
@@ -122,8 +123,24 @@ private:
         ImGui::EndDisabled();
         if (is_confirmed) actions.push_back(task);
         ImGui::SameLine();
-        return ImGui::Button("Cancel", button) ||
-               (!has_chooser && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) || is_confirmed;
+        const bool is_cancelled = ImGui::Button("Cancel", button) ||
+                                  (!has_chooser && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)));
+        return copies(task, actions) || is_cancelled || is_confirmed;
+    }
+    /// Draws the button of figures that puts them into the clipboard. Returns whether it was pressed.
+    bool copies(const Task& task, Actions& actions) const
+    {
+        if constexpr (std::is_same_v<Form, FigureForm>) {
+            ImGui::SameLine();
+            if (copy_button(why_not(form_))) {
+                FigureTask copy = task;
+                copy.is_copied = true;
+                copy.path.clear();
+                actions.push_back(copy);
+                return true;
+            }
+        }
+        return false;
     }
     std::string refusal(const Model& model, const Task& task)
     {
@@ -185,6 +202,8 @@ struct Dialogs {
     TaskDialog<ImportForm> importing{Dialog::import_scan, "Import"};
     TaskDialog<LabelForm> labelling{Dialog::label, "Label"};
     TaskDialog<CompareForm> comparing{Dialog::compare, "Compare"};
+    TaskDialog<FigureForm> figure{Dialog::figure, "Save"};
+    TaskDialog<MovieForm> movie{Dialog::movie, "Make"};
     std::filesystem::path volume_to_import;  ///< the next import is of this one
 };
 Dialogs dialogs;
@@ -220,6 +239,8 @@ void task_dialogs(const Model& model, Actions& actions)
                            [&] { return suggested_import(model, std::exchange(dialogs.volume_to_import, {})); });
     dialogs.labelling.draw(model, actions, [&] { return suggested_label(model); });
     dialogs.comparing.draw(model, actions, [&] { return dialogs.comparing.form(); });
+    dialogs.figure.draw(model, actions, [&] { return suggested_figure(model, dialogs.figure.form()); });
+    dialogs.movie.draw(model, actions, [&] { return suggested_movie(model, dialogs.movie.form()); });
 }
 
 bool task_dialog_waits()

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include "engine/base/image_file.h"
+#include "engine/session/picture_session.h"
 #include "engine/workbench/services/photographer.h"
 #include "tests/gpu/workbench/services/desk_with_scan.h"
 
@@ -47,4 +49,40 @@ TEST_CASE_FIXTURE(PhotographerAlone, "photographer: only its own number cancels 
     CHECK_FALSE(photographer.has_large());
     CHECK(says("cancelled by painting"));
     document().annotator.end_stroke();
+}
+
+TEST_CASE_FIXTURE(PhotographerAlone,
+                  "photographer: a figure has its size and its session, and is not joined by another")
+{
+    const std::filesystem::path path = folder.path / "a.tif";
+    photographer.act(FigureTask{.path = path, .pixels = {59, 30}, .dots_per_inch = 300.0, .is_transparent = true});
+    CHECK(says("A figure of 59 x 30 pixels, 5 x 2.5 mm at 300 dots per inch is drawn"));
+    CHECK_THROWS_WITH(photographer.act(FigureTask{.path = folder.path / "b.png"}),
+                      doctest::Contains("nother picture is being drawn"));
+    until([&] { photographer.advance(); }, [&] { return !photographer.has_large(); });
+    const std::optional<PictureSession> kept = session_in_picture(path);
+    REQUIRE(kept);
+    CHECK(kept->text.find("[59,30]") != std::string::npos);
+    CHECK(kept->text.find("#ffffff00") != std::string::npos);
+    CHECK_FALSE(std::filesystem::exists(folder.path / "b.png"));
+}
+
+TEST_CASE_FIXTURE(PhotographerAlone, "photographer: a movie turns, and a cancelled one names what is finished")
+{
+    const MovieTask task{.path = folder.path / "frames", .turntable_degrees = 180.0, .frames = 3, .pixels = {24, 20}};
+    photographer.act(task);
+    until([&] { photographer.advance(); }, [&] { return !photographer.has_large(); });
+    CHECK(says("frames (3 frames, 24 x 20 pixels)"));
+    CHECK_FALSE(read_png(task.path / "frame-0001.png") == read_png(task.path / "frame-0002.png"));
+    photographer.act(task);
+    until([&] { photographer.advance(); },
+          [&] {
+              std::vector<Jobs::State> states;
+              photographer.add_loading(states);
+              return states.empty() || states[0].fraction > 0.34;
+          });
+    REQUIRE(photographer.has_large());
+    CHECK(photographer.cancel(PICTURE_JOB));
+    CHECK(says("frame-0001.png is finished"));
+    CHECK_THROWS_AS(photographer.act(MovieTask{.path = folder.path / "m", .views = "nowhere\nfront"}), Error);
 }

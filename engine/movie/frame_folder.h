@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-namespace shvr::cli {
+namespace shvr {
 
 /// Fails if the folder cannot be written, or holds anything but frames 1 to `frames` of an earlier movie, which are
 /// replaced. It may be missing.
@@ -25,4 +25,4 @@ private:
 /// Returns a clause that names the finished frames: "frames/frame-0001.png to frame-0012.png are finished".
 std::string finished_frames(const std::filesystem::path& folder, int finished, int frames);
 
-}  // namespace shvr::cli
+}  // namespace shvr

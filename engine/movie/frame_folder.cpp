@@ -1,4 +1,4 @@
-#include "tools/cli/movie/frame_folder.h"
+#include "engine/movie/frame_folder.h"
 
 #include "engine/base/atomic_writer.h"
 #include "engine/base/error.h"
@@ -6,7 +6,7 @@
 #include "engine/movie/movie.h"
 #include "engine/tasks/task_output.h"
 
-namespace shvr::cli {
+namespace shvr {
 
 namespace fs = std::filesystem;
 
@@ -53,4 +53,4 @@ std::string finished_frames(const fs::path& folder, int finished, int frames)
     return sentence(first, " to ", frame_file(finished - 1, frames), " are finished");
 }
 
-}  // namespace shvr::cli
+}  // namespace shvr

@@ -1,0 +1,46 @@
+#pragma once
+// The dialog Figure: the file, the size on paper or in pixels, and what is drawn over the picture. Pure, except for
+// check and replaced_files, which read the disk; any thread.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/workbench/actions/picture_actions.h"
+#include "engine/workbench/models/model.h"
+#include "engine/workbench/sight/print_size.h"
+
+namespace shvr::ui {
+
+/// A size as typed.
+struct SizeForm {
+    double width = 85.0, height = 64.0;
+    bool is_in_mm = true;
+    double dots_per_inch = PRINT_DPI;
+};
+/// Returns 0, 0 for a size that no picture can have.
+glm::ivec2 pixels_of(const SizeForm& form);
+/// Changes the unit and keeps the pixels.
+void change_unit(SizeForm& form, bool is_in_mm);
+
+struct FigureForm {
+    std::string path;  ///< as typed
+    SizeForm size;
+    FigureTask more{.has_scale_bar = true};  ///< what is drawn
+    std::string next_text;                   ///< typed, not yet among the texts
+    glm::dvec3 probe_voxel{0.0};             ///< where the next text is put
+};
+
+/// Returns a form for the present view, with a name next to the scan, and the picture's shape. `last`: choices to use
+/// again.
+FigureForm suggested_figure(const Model& model, const FigureForm& last);
+/// Adds the typed text, at the probe, to those that are drawn.
+void add_text(FigureForm& form);
+std::string why_not(const FigureForm& form);
+/// `folder`: where relative names lie.
+FigureTask task_of(const FigureForm& form, const std::filesystem::path& folder);
+/// Fails if the figure cannot be written there.
+void check(const FigureTask& task);
+std::vector<std::filesystem::path> replaced_files(const FigureTask& task);
+
+}  // namespace shvr::ui

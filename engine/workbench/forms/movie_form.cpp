@@ -1,0 +1,86 @@
+#include "engine/workbench/forms/movie_form.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/text.h"
+#include "engine/movie/frame_folder.h"
+#include "engine/movie/movie.h"
+#include "engine/movie/movie_encoder.h"
+#include "engine/tasks/task_output.h"
+#include "engine/workbench/forms/form_names.h"
+
+namespace shvr::ui {
+
+namespace {
+
+const char* ending_of(MovieKind kind)
+{
+    return kind == MovieKind::webm ? ".webm" : kind == MovieKind::mp4 ? ".mp4" : "";
+}
+
+}  // namespace
+
+MovieForm suggested_movie(const Model& model, const MovieForm& last)
+{
+    MovieForm form = last;
+    form.path = form.suggested = base_of(model).string() + "-movie";
+    choose_kind(form, last.kind);
+    const std::vector<std::string> names = camera_names(model.session);
+    std::erase_if(form.views, [&](const std::string& view) { return std::ranges::find(names, view) == names.end(); });
+    return form;
+}
+
+void choose_kind(MovieForm& form, MovieKind kind)
+{
+    form.kind = kind;
+    std::filesystem::path path = form.path;
+    if (is_movie_file(path)) path.replace_extension();
+    form.path = path.string() + ending_of(kind);
+}
+
+std::string why_not(const MovieForm& form)
+{
+    if (form.goes_through_views && form.views.size() < 2)
+        return "no way is chosen; expected at least two views to go through";
+    const double frames = std::round(form.seconds * form.more.frames_per_second);
+    if (!(frames >= 1.0 && frames <= double(MAX_MOVIE_FRAMES)))
+        return sentence("the movie has ", form.seconds, " s at ", form.more.frames_per_second,
+                        " frames per second; expected 1 to ", MAX_MOVIE_FRAMES, " frames");
+    const glm::ivec2& size = form.more.pixels;
+    const bool is_file = form.kind != MovieKind::frames;
+    if (size.x < 1 || size.y < 1 || (is_file && (size.x % 2 != 0 || size.y % 2 != 0)))
+        return sentence("the size is ", size.x, " x ", size.y, " pixels; expected ",
+                        is_file ? "even numbers from 2" : "numbers from 1");
+    return {};
+}
+
+MovieTask task_of(const MovieForm& form, const std::filesystem::path& folder)
+{
+    MovieTask task = form.more;
+    task.path = placed(form.path, folder);
+    task.views.clear();
+    if (form.goes_through_views)
+        for (const std::string& view : form.views) task.views += (task.views.empty() ? "" : "\n") + view;
+    task.turntable_degrees = form.goes_through_views ? 0.0 : form.degrees;
+    task.frames = int(std::clamp(std::round(form.seconds * task.frames_per_second), 1.0, double(MAX_MOVIE_FRAMES)));
+    return task;
+}
+
+void check(const MovieTask& task)
+{
+    if (!is_movie_file(task.path)) return check_frame_folder(task.path, task.frames);
+    check_movie_file(task.path, task.pixels);
+    check_output_place(task.path);
+}
+
+std::vector<std::filesystem::path> replaced_files(const MovieTask& task)
+{
+    std::error_code ignored;
+    const bool is_file = is_movie_file(task.path);
+    const std::filesystem::path first = is_file ? task.path : task.path / frame_file(0, task.frames);
+    if (!std::filesystem::exists(first, ignored)) return {};
+    return {first};
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,155 @@
+"""Figures and movies by their dialogs: files, the clipboard, and their messages."""
+import os
+import struct
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from seen import Seen  # noqa: E402
+
+FIGURE, MOVIE = "Figure", "Movie"
+
+
+def size_of(png):
+    return struct.unpack(">II", png.read_bytes()[16:24])
+
+
+class Figure(Seen):
+    def open_ball(self, environment=None):
+        session = self.write_ball(volume={"procedural": "sphere", "size": [32, 32, 32]})
+        self.open_scan(session, preferences={"hints_seen": 3}, environment=environment)
+
+    def show(self, entry, window):
+        self.click_on("File", "##MainMenuBar")
+        self.click_on(entry, "##Menu_00")
+        self.see("Cancel", window)
+
+    def programs(self, **scripts):
+        """An environment in which only those programs, and no others, are found."""
+        folder = self.folder / "programs"
+        folder.mkdir(exist_ok=True)
+        for name, script in scripts.items():
+            (folder / name.replace("_", "-")).write_text("#!/bin/sh\n" + script)
+            (folder / name.replace("_", "-")).chmod(0o755)
+        return {"PATH": folder, "WAYLAND_DISPLAY": ""}
+
+    def test_a_figure_is_named_sized_and_confirmed_by_enter(self):
+        self.open_ball()
+        self.show("Figure...", FIGURE)
+        self.see("Draws 1004 x ", FIGURE)
+        self.do("key", "ctrl+a", "type", "--delay", 30, "leaf.tif", pause_s=0)
+        self.see("leaf.tif", FIGURE)
+        self.click_on("Legend", FIGURE)
+        self.press("Return")
+        self.see_no_more("", FIGURE)
+        self.until(lambda: any("leaf.tif (1004 x " in seen["text"] for seen in self.seen(window="Status")), "message")
+        action = next(line for line in self.done() if line["op"] == "figure")
+        self.assertTrue(action["scale_bar"] and action["legend"])
+        self.assertEqual(action["dots_per_inch"], 300)
+        report = self.finish()
+        said = next(line for line in report["messages"] if "leaf.tif" in line)
+        self.assertTrue(said.startswith(f"Figure: {self.folder / 'leaf.tif'} (1004 x "), said)
+        self.assertTrue(said.endswith("; the legend is left out: no group is painted or traced, and visible"), said)
+        again = self.folder / "again.png"
+        self.check("render", self.folder / "leaf.tif", "-o", again)   # from the session in it
+        self.assertEqual(list(size_of(again)), action["pixels"])
+
+    def test_a_size_that_no_picture_has_is_refused_in_the_dialog(self):
+        self.open_ball()
+        self.press("Ctrl+Shift+P")
+        self.see("", "Find anything")
+        self.do("type", "--delay", 30, "figure...", pause_s=0)
+        self.see("Figure...", "Find anything")
+        self.press("Return")
+        self.see("Draws 1004 x ", FIGURE)
+        self.type_into("Size", "900000", FIGURE)
+        self.see("the size is 900000 x ", FIGURE)
+        self.press("Return")
+        self.see_frames()
+        self.see("Cancel", FIGURE)
+        self.press("Escape")
+        self.see_no_more("", FIGURE)
+        self.finish()
+        self.assertEqual(list(self.folder.glob("*figure*")), [])
+
+    def test_a_picture_is_copied_through_the_program_of_the_display(self):
+        copied, words = self.folder / "copied.png", self.folder / "words"
+        self.open_ball(self.programs(xclip=f'/bin/cat > {copied}\necho "$@" > {words}\n'))
+        self.show("Figure...", FIGURE)
+        self.click_on("Copy picture", FIGURE)
+        self.see("Copied the picture to the clipboard (1004 x ", "Status")
+        self.finish()
+        self.assertEqual(size_of(copied)[0], 1004)
+        self.assertEqual(words.read_text(), "-selection clipboard -target image/png -in\n")
+
+    def test_without_programs_the_dialogs_name_their_packages(self):
+        self.open_ball(self.programs())
+        self.show("Figure...", FIGURE)
+        self.see("Copy picture needs xclip", FIGURE)
+        self.press("Escape")
+        self.see_no_more("", FIGURE)
+        self.show("Movie...", MOVIE)
+        self.see("WebM and MP4 need the package ffmpeg", MOVIE)
+        self.see("Frames as PNG", MOVIE)
+        self.press("Escape")
+        self.see_no_more("", MOVIE)
+        self.finish()
+
+    def test_a_movie_turns_and_can_be_cancelled(self):
+        self.open_ball()
+        self.show("Movie...", MOVIE)
+        self.see("Draws 120 frames of 1280 x 720 pixels to ", MOVIE)
+        self.press("Return")
+        self.see_no_more("", MOVIE)
+        self.see("Movie: frame ", "Status")
+        self.click_on("Cancel", "Jobs")
+        self.see("Cancelled: the movie", "Status")
+        self.see_no_more("", "Jobs")
+        self.assertEqual(list(self.folder.glob("*movie*")), [])
+        self.show("Movie...", MOVIE)
+        self.click_on("WebM", MOVIE)
+        self.click_on("Frames as PNG", "##Combo_")
+        self.see("Frames as PNG", MOVIE)
+        self.type_into("Length", "0.1", MOVIE)
+        self.see("Draws 3 frames of ", MOVIE)
+        self.type_into("Size", "64", MOVIE)
+        self.see("Draws 3 frames of 64 x 720 ", MOVIE)
+        self.press("Return")
+        self.see("Movie: ", "Status")
+        folder = next(line for line in self.done() if line["op"] == "movie" and line["frames"] == 3)["path"]
+        self.until(lambda: any(seen["text"].startswith(f"Movie: {folder} (3 frames") for seen in self.seen()), "a movie")
+        self.finish()
+        frames = sorted(os.listdir(folder))
+        self.assertEqual(frames, ["frame-0001.png", "frame-0002.png", "frame-0003.png"])
+        self.assertEqual({size_of(self.folder / folder / name) for name in frames}, {(64, 720)})
+
+    def test_a_movie_goes_through_views_into_a_file(self):
+        if subprocess.run(["which", "ffmpeg"], capture_output=True).returncode:
+            self.skipTest("ffmpeg is not installed")
+        self.open_ball()
+        self.show("Movie...", MOVIE)
+        self.click_on("turns the volume", MOVIE)
+        self.click_on("goes from view to view", "##Combo_")
+        self.see("a movie of one view", MOVIE)
+        for view in ("front", "top"):
+            self.click_on("Add a view", MOVIE)
+            self.click_on(view, "##Combo_")
+            self.see(view, MOVIE)
+        self.type_into("Length", "0.1", MOVIE)
+        self.type_into("Size", "64", MOVIE)
+        self.see("Draws 3 frames of 64 x 720 ", MOVIE)
+        self.press("Return")
+        self.until(lambda: any(" (3 frames, 64 x 720 pixels)" in seen["text"] for seen in self.seen()), "a movie")
+        action = next(line for line in self.done() if line["op"] == "movie")
+        self.assertEqual(action["views"], "front\ntop")
+        self.finish()
+        probe = subprocess.run(["ffprobe", "-v", "error", "-count_frames", "-show_entries",
+                                "stream=nb_read_frames,width,height", "-of", "csv=p=0", action["path"]],
+                               capture_output=True, text=True)
+        self.assertEqual(probe.stdout.strip(), "64,720,3")
+
+
+if __name__ == "__main__":
+    unittest.main()

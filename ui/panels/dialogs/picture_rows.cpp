@@ -1,0 +1,256 @@
+#include "ui/panels/dialogs/picture_rows.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include <imgui/imgui.h>
+#include <imgui/imgui_stdlib.h>
+
+#include "engine/base/machine/clipboard.h"
+#include "engine/base/machine/programs.h"
+#include "engine/base/text.h"
+#include "engine/workbench/forms/form_names.h"
+#include "ui/files/asked.h"
+#include "ui/panels/dialogs/field_widgets.h"
+#include "ui/panels/widgets.h"
+
+namespace shvr::ui {
+
+namespace {
+
+/// Programs of this machine that pictures need, found in the background.
+struct Programs {
+    bool has_ffmpeg = false;
+    ClipboardProgram clipboard{};
+};
+
+/// Returns null until they are known.
+const Programs* programs()
+{
+    static Asked<Programs> asked([] { return Programs{shvr::is_installed("ffmpeg"), clipboard_program()}; });
+    static std::optional<Programs> known;
+    if (!known) known = asked.take(AT_ONCE);
+    return known ? &*known : nullptr;
+}
+
+void number_field(const char* id, double& value, const char* format = "%.6g")
+{
+    ImGui::SetNextItemWidth(5.0f * ImGui::GetFontSize());
+    ImGui::InputDouble(id, &value, 0.0, 0.0, format);
+}
+
+void whole_field(const char* id, int& value)
+{
+    ImGui::SetNextItemWidth(5.0f * ImGui::GetFontSize());
+    ImGui::InputInt(id, &value, 0);
+}
+
+void words_after(const char* words)
+{
+    ImGui::SameLine();
+    ImGui::TextDisabled("%s", words);
+}
+
+void size_rows(SizeForm& size)
+{
+    field_name("Size");
+    number_field("##width", size.width);
+    ImGui::SameLine();
+    ImGui::TextUnformatted("x");
+    ImGui::SameLine();
+    number_field("##height", size.height);
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(6.0f * ImGui::GetFontSize());
+    if (ImGui::BeginCombo("##unit", size.is_in_mm ? "mm" : "pixels")) {
+        if (ImGui::Selectable("mm", size.is_in_mm)) change_unit(size, true);
+        if (ImGui::Selectable("pixels", !size.is_in_mm)) change_unit(size, false);
+        ImGui::EndCombo();
+    }
+    if (!size.is_in_mm) return;
+    field_name("Resolution");
+    number_field("##resolution", size.dots_per_inch);
+    words_after("dots per inch");
+    hint("Journals ask for 300 or more.");
+}
+
+void elements_row(FigureTask& task)
+{
+    field_name("Draw");
+    ImGui::Checkbox("Scale bar", &task.has_scale_bar);
+    hint("A line of a rounded length; in perspective, it names the plane in which it holds.");
+    ImGui::SameLine();
+    ImGui::Checkbox("Colour bar", &task.has_color_bar);
+    hint("Colours and opacity of the transfer function, with intensities.");
+    ImGui::SameLine();
+    ImGui::Checkbox("Legend", &task.has_legend);
+    hint("Colours and names of the groups that are painted or traced.");
+    ImGui::SameLine();
+    ImGui::Checkbox("Axes", &task.has_axes);
+    hint("Directions of x, y and z.");
+}
+
+void text_rows(FigureForm& form)
+{
+    field_name("Label");
+    ImGui::SetNextItemWidth(21.0f * ImGui::GetFontSize());
+    want_glyphs(form.next_text);
+    ImGui::InputTextWithHint("##label", "a text at the probe, with a dot", &form.next_text);
+    ImGui::SameLine();
+    if (ImGui::Button("Add")) add_text(form);
+    hint("Keeps the label, so that another one can be typed.");
+    for (size_t i = 0; i < form.more.texts.size(); ++i) {
+        ImGui::PushID(int(i));
+        field_name("");
+        want_glyphs(form.more.texts[i].text);
+        const bool is_removed = ImGui::SmallButton("Remove");
+        ImGui::SameLine();
+        ImGui::TextUnformatted(form.more.texts[i].text.c_str());
+        ImGui::PopID();
+        if (is_removed) form.more.texts.erase(form.more.texts.begin() + std::ptrdiff_t(i--));
+    }
+}
+
+const char* name_of(MovieKind kind)
+{
+    return kind == MovieKind::webm ? "WebM" : kind == MovieKind::mp4 ? "MP4" : "Frames as PNG";
+}
+
+void kind_row(MovieForm& form)
+{
+    const Programs* const known = programs();
+    const bool has_ffmpeg = !known || known->has_ffmpeg;
+    if (!has_ffmpeg && form.kind != MovieKind::frames) choose_kind(form, MovieKind::frames);
+    field_name("Format");
+    ImGui::SetNextItemWidth(10.0f * ImGui::GetFontSize());
+    if (ImGui::BeginCombo("##format", name_of(form.kind))) {
+        for (const MovieKind kind : {MovieKind::webm, MovieKind::mp4, MovieKind::frames}) {
+            const bool is_offered = has_ffmpeg || kind == MovieKind::frames;
+            const std::string name = sentence(name_of(kind), is_offered ? "" : " (install the package ffmpeg)");
+            const ImGuiSelectableFlags flags = is_offered ? 0 : ImGuiSelectableFlags_Disabled;
+            if (ImGui::Selectable(name.c_str(), kind == form.kind, flags)) choose_kind(form, kind);
+        }
+        ImGui::EndCombo();
+    }
+    if (!has_ffmpeg) words_after("WebM and MP4 need the package ffmpeg");
+}
+
+void views_rows(MovieForm& form, const Model& model)
+{
+    for (size_t i = 0; i < form.views.size(); ++i) {
+        ImGui::PushID(int(i));
+        field_name(i == 0 ? "Views" : "");
+        want_glyphs(form.views[i]);
+        const bool is_removed = ImGui::SmallButton("Remove");
+        ImGui::SameLine();
+        ImGui::TextUnformatted(form.views[i].c_str());
+        ImGui::PopID();
+        if (is_removed) form.views.erase(form.views.begin() + std::ptrdiff_t(i--));
+    }
+    field_name(form.views.empty() ? "Views" : "");
+    ImGui::SetNextItemWidth(10.0f * ImGui::GetFontSize());
+    if (ImGui::BeginCombo("##view", "Add a view")) {
+        for (const std::string& name : camera_names(model.session))
+            if (ImGui::Selectable(name.c_str())) form.views.push_back(name);
+        ImGui::EndCombo();
+    }
+    hint("Saved views (View > Keep this view) and sides; the movie slows down at each.");
+}
+
+void motion_rows(MovieForm& form, const Model& model)
+{
+    constexpr const char *TURNS = "turns the volume", *GOES = "goes from view to view";
+    field_name("The movie");
+    ImGui::SetNextItemWidth(13.0f * ImGui::GetFontSize());
+    if (ImGui::BeginCombo("##motion", form.goes_through_views ? GOES : TURNS)) {
+        if (ImGui::Selectable(TURNS, !form.goes_through_views)) form.goes_through_views = false;
+        if (ImGui::Selectable(GOES, form.goes_through_views)) form.goes_through_views = true;
+        ImGui::EndCombo();
+    }
+    if (form.goes_through_views) return views_rows(form, model);
+    ImGui::SameLine();
+    number_field("##degrees", form.degrees);
+    words_after("degrees");
+}
+
+void length_row(MovieForm& form)
+{
+    field_name("Length");
+    number_field("##seconds", form.seconds);
+    words_after("s at");
+    ImGui::SameLine();
+    number_field("##rate", form.more.frames_per_second);
+    words_after("frames per second");
+}
+
+}  // namespace
+
+bool draw_form(FigureForm& form, const Model& model, const KnownScan&, bool begins)
+{
+    const bool has_chooser = path_chooser_is_open();
+    path_row("File", form.path, ".png or .tif", base_of(model).parent_path() / "", begins);
+    size_rows(form.size);
+    elements_row(form.more);
+    field_name("Title");
+    want_glyphs(form.more.title);
+    ImGui::InputTextWithHint("##title", "none", &form.more.title);
+    if (more_heading()) {
+        field_name("Background");
+        ImGui::Checkbox("Transparent", &form.more.is_transparent);
+        text_rows(form);
+    }
+    return has_chooser;
+}
+
+bool draw_form(MovieForm& form, const Model& model, const KnownScan&, bool begins)
+{
+    const bool has_chooser = path_chooser_is_open();
+    path_row("File", form.path, "the movie, or a folder for its frames", base_of(model).parent_path() / "", begins);
+    kind_row(form);
+    motion_rows(form, model);
+    length_row(form);
+    field_name("Size");
+    whole_field("##width", form.more.pixels.x);
+    ImGui::SameLine();
+    ImGui::TextUnformatted("x");
+    ImGui::SameLine();
+    whole_field("##height", form.more.pixels.y);
+    words_after("pixels");
+    if (more_heading()) {
+        field_name("Draw");
+        ImGui::Checkbox("Scale bar", &form.more.has_scale_bar);
+    }
+    return has_chooser;
+}
+
+std::string about(const FigureForm& form, const Model& model, const KnownScan&)
+{
+    const glm::ivec2 pixels = pixels_of(form.size);
+    const std::filesystem::path folder = placed(form.path, base_of(model).parent_path()).parent_path();
+    return sentence("Draws ", pixels.x, " x ", pixels.y, " pixels to ", folder.string(),
+                    ". The file keeps the session, from which shvr render makes it again.");
+}
+
+std::string about(const MovieForm& form, const Model& model, const KnownScan&)
+{
+    const MovieTask task = task_of(form, base_of(model).parent_path());
+    return sentence("Draws ", counted(task.frames, "frame"), " of ", task.pixels.x, " x ", task.pixels.y, " pixels to ",
+                    task.path.parent_path().string(), ", in the background.");
+}
+
+bool copy_button(const std::string& why)
+{
+    const Programs* const known = programs();
+    const bool is_missing = known && !known->clipboard.is_installed;
+    const std::string name = is_missing ? "Copy picture needs " + known->clipboard.package : "Copy picture";
+    ImGui::BeginDisabled(!why.empty() || is_missing || !known);
+    const bool is_pressed = ImGui::Button((name + "###copy").c_str());
+    ImGui::EndDisabled();
+    if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+        ImGui::SetTooltip(
+            "%s", is_missing ? sentence("Install the package ", known->clipboard.package, " and start again").c_str()
+                             : "Puts the figure into the clipboard, for other programs");
+    return is_pressed;
+}
+
+}  // namespace shvr::ui
