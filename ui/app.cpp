@@ -329,8 +329,8 @@ void App::hold_back(std::vector<InputEvent>& events, size_t first)
 }
 
 /// Returns whether the interface must apply this event in a frame of its own before it gets the next one: a key that
-/// opens or closes a field, edits text or moves the focus, or a click that may give the keyboard to another field. Within
-/// one frame, Dear ImGui applies text before keys.
+/// opens or closes a field, edits text or moves the focus, or a click that may give the keyboard to another field.
+/// Within one frame, Dear ImGui applies text before keys.
 bool App::decides(const InputEvent& event, bool is_for_ui) const
 {
     if (std::holds_alternative<ButtonEvent>(event.what)) return is_for_ui || field_has_keys();

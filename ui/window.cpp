@@ -60,7 +60,7 @@ struct Window::Input {
     std::vector<InputEvent> events;
     glm::ivec2 place{0}, size{0};  ///< position and size of the window before it became full screen
     FrameKeys keys;                ///< for the next frame of the interface
-    FrameKeys last_keys;           ///< of its last frame
+    FrameKeys last_keys;           ///< keys of its last frame
     MouseFeed mouse;
     double asked_s = 0.0, answered_s = 0.0;  ///< when the last wait for events began and ended
 

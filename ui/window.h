@@ -92,7 +92,7 @@ public:
     void tell_ui(const InputEvent& event);
     /// Returns whether a key is held down.
     bool is_down(int key) const;
-    /// Returns whether the interface's last frame was told of a press of the key, so that it saw the key down.
+    /// Returns whether the interface's last frame received a press of the key, so that it saw the key down.
     bool was_just_pressed(int key) const;
     /// Returns whether button presses are still queued for the interface, which gets one press per frame.
     bool has_clicks() const;
