@@ -95,7 +95,9 @@ StatedView stated_view(const std::string& text)
         read_object(text, "--keys", view);
     } else if (extension == ".png" || extension == ".tif" || extension == ".tiff") {
         const std::optional<PictureSession> picture = session_in_picture(text);
-        if (!picture) fail(text, ": is no picture that holds its session; expected one");
+        if (!picture)
+            fail(text, fs::exists(text) ? ": is no picture that holds its session" : ": does not exist",
+                 "; expected a picture that holds its session");
         read_whole(picture->text, text, view);
     } else if (extension == ".json") {
         const std::string content = read_text(text, MAX_VIEW_BYTES);
