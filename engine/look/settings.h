@@ -78,6 +78,16 @@ constexpr std::span<const Spelling<Paging>> spellings_of(Paging)
     return PAGINGS;
 }
 
+/// How the density's gradient, which gives the normal of shading, is computed. `central`: differences over one voxel,
+/// of twelve more codes than the sample's own eight. `analytic`: the derivative of the trilinear interpolation of these
+/// eight, which is not continuous across voxels.
+enum class Gradient { central, analytic };
+inline constexpr Spelling<Gradient> GRADIENTS[] = {{Gradient::central, "central"}, {Gradient::analytic, "analytic"}};
+constexpr std::span<const Spelling<Gradient>> spellings_of(Gradient)
+{
+    return GRADIENTS;
+}
+
 /// How unpainted voxels look, in addition to the transfer function.
 struct Unpainted {
     bool visible = true;
@@ -98,6 +108,7 @@ struct RenderSettings {
     /// Integrates light exactly, between voxel borders and points of the transfer function, instead of sampling it in
     /// steps (shaders/rays/integral.comp). Requires steps of at most 1 and exact sampling. Overrides preintegration.
     bool exact_integral = false;
+    Gradient gradient = Gradient::central;  ///< of samples in steps; the exact integral and occlusion use `central`
     /// Smooths the borders of painted groups: a sample takes the label with the largest total weight among its eight
     /// neighbouring voxels instead of the nearest voxel's label. Slices and occlusion still use the nearest voxel.
     bool smooth_borders = false;

@@ -180,7 +180,10 @@ KernelVariant kernel_of(const Choice& choice, const RaycastInput& input)
     const auto constant = [&](const char* name, uint32_t value) { kernel.second.emplace_back(name, value); };
     if (choice.is_paged) constant("FEEDBACK", choice.feedback);
     constant("SHADED", choice.is_shaded);
-    if (choice.is_shaded) constant("SHININESS_SQUARINGS", shininess_squarings(input.params.shininess));
+    if (choice.is_shaded) {
+        constant("SHININESS_SQUARINGS", shininess_squarings(input.params.shininess));
+        if (input.analytic_gradient && !choice.is_integrated) constant("ANALYTIC_GRADIENT", 1);
+    }
     constant("COUNT_WORK", input.count_work);
     if (is_shelled) constant("SHELL", choice.shell);
     if (choice.is_occluded) constant("OCCLUSION_MAPPED", !input.occlusion->segments.empty());

@@ -39,6 +39,7 @@ struct RaycastInput {
     std::optional<RaycastOcclusion> occlusion;
     std::optional<Resource> surfaces;  ///< surfaces for the same pixels (engine/passes/surfaces.h)
     bool shaded = true;
+    bool analytic_gradient = false;  ///< shades samples by the derivative of the interpolation (Gradient::analytic)
     bool count_work = false;
     PixelGroups pixel_groups;
     uint32_t shell = gpu::SHELL_NONE;  ///< unless SHELL_NONE, params.shell_* are set

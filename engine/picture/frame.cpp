@@ -80,6 +80,7 @@ Prepared prepare(FrameGraph& graph, Scene& scene, const Look& look, const Shot& 
     if (!shot.is_slice && look.shows_meshes) prepared.listed = scene.surfaces().upload(graph);
     input.params = raycast_params(look, shot.camera, scene, prepared.volume, part, step_voxels);
     input.shaded = look.light.shaded && !shot.is_slice;
+    input.analytic_gradient = look.render.gradient == Gradient::analytic;
     input.slice = shot.is_slice;
     input.smooth_borders = look.render.smooth_borders && !shot.is_slice;
     input.preintegrated = look.render.classifies_steps() && !shot.is_slice;

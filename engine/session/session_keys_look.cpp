@@ -145,6 +145,10 @@ void way_fields(Fields& f, RenderSettings& render)
            {"true: integrates light between borders of voxels and points of the transfer function, to about 1e-5, "
             "instead of sampling steps; takes the place of `preintegration`; needs exact sampling, and steps of at "
             "most 1"});
+    f.choice("gradient", render.gradient,
+             {"differences that shading takes its normals from: over one voxel (central), or the derivative of the "
+              "interpolation inside the voxel (analytic), which reads half of the voxels at a larger error; "
+              "`exact_integral` and occlusion always use central ones"});
     f.retired("adaptive_tolerance");
     f.check("preintegration", !render.preintegration || render.step_voxels <= 1.0,
             sentence("false, because render.step_voxels is ", render.step_voxels, ", above 1"));

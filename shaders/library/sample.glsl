@@ -76,8 +76,8 @@ Sample sample_at(const RaycastParams params, const Ray ray, vec3 position, float
             ivec3(slot_origin(texels.slot)) - ivec3(texels.brick * BRICK_SIZE) + int(BRICK_APRON);
         ambient *= ambient_share(texels.lattice, to_values, vec3(last));
 #endif
-        found.look.rgb =
-            shade(params, ambient, found.look.rgb, gradient_of(density) * params.inverse_spacing, ray.half_way);
+        const vec3 slope = ANALYTIC_GRADIENT != 0u ? analytic_gradient_of(density) : gradient_of(density);
+        found.look.rgb = shade(params, ambient, found.look.rgb, slope * params.inverse_spacing, ray.half_way);
     }
     if (DISTANCE_BLEND != 0u) found.look.rgb = blended(params, found.look.rgb, position);
 #endif

@@ -19,8 +19,10 @@ layout(constant_id = 3) const uint SHININESS_SQUARINGS = NOT_A_POWER_OF_TWO;
 layout(constant_id = 5) const uint FEEDBACK = 0u;
 layout(constant_id = 6) const uint DISTANCE_BLEND = 0u;
 #ifdef INTEGRATED
-const uint PREINTEGRATED = 0u;
+const uint PREINTEGRATED = 0u, ANALYTIC_GRADIENT = 0u;
 #else
+// 1: shades by the derivative of the interpolation instead of central differences.
+layout(constant_id = 7) const uint ANALYTIC_GRADIENT = 0u;
 // 1: classifies a step by the densities at its two ends. 2: the same, and rays also end at opaque densities.
 layout(constant_id = 9) const uint PREINTEGRATED = 0u;
 #endif

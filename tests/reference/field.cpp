@@ -57,9 +57,25 @@ glm::dvec3 difference_at(const Scene& scene, const glm::dvec3& voxel)
     return difference;
 }
 
+glm::dvec3 slope_at(const Scene& scene, const glm::dvec3& voxel)
+{
+    const Cell cell = cell_at(scene, voxel);
+    glm::dvec3 slope(0.0);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (voxel[axis] < cell.low_centre[axis]) continue;  // outside the centres, where values are those of the edge
+        glm::dvec3 low = voxel, high = voxel;
+        low[axis] = cell.low_centre[axis];
+        high[axis] = cell.low_centre[axis] + 1.0;
+        slope[axis] = value_in(cell, high) - value_in(cell, low);
+    }
+    return slope;
+}
+
 glm::dvec3 gradient_at(const Scene& scene, const glm::dvec3& voxel)
 {
-    return difference_at(scene, voxel) / scene.spacing * reference_length(scene);
+    const bool is_analytic = scene.shading && scene.shading->has_analytic_gradient;
+    return (is_analytic ? slope_at(scene, voxel) : difference_at(scene, voxel)) / scene.spacing *
+           reference_length(scene);
 }
 
 uint8_t label_at(const Scene& scene, const glm::dvec3& voxel)

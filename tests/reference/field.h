@@ -21,7 +21,11 @@ double density_at(const Scene& scene, const glm::dvec3& voxel);
 /// Central difference over one voxel (half a voxel to each side), per voxel.
 glm::dvec3 difference_at(const Scene& scene, const glm::dvec3& voxel);
 
-/// The same in physical space, per reference voxel: divided by the spacing, times the reference length.
+/// Derivative of density_at() inside the cell of that position, per voxel; 0 along an axis outside all centres.
+glm::dvec3 slope_at(const Scene& scene, const glm::dvec3& voxel);
+
+/// The one that the scene's shading uses, in physical space, per reference voxel: divided by the spacing, times the
+/// reference length.
 glm::dvec3 gradient_at(const Scene& scene, const glm::dvec3& voxel);
 
 /// Label of the voxel at the position; 0 if the scene has no labels.

@@ -47,6 +47,7 @@ struct Shading {
     double shininess = 32.0;
     double fade = 0.03;                  ///< density per reference voxel; 0: w = 1 wherever m > 1e-6
     glm::dvec3 to_light{0.0, 0.0, 1.0};  ///< physical space, need not be unit
+    bool has_analytic_gradient = false;  ///< shades by slope_at() instead of central differences
     /// What `ambient` is multiplied by, trilinear between voxel centres; empty: 1. One per voxel.
     std::vector<double> ambient_shares{};
 };

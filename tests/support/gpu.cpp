@@ -305,7 +305,8 @@ reference::Scene scene_of(const TestVolume& volume, const Session& session, cons
                                            .specular = session.light.specular,
                                            .shininess = session.light.shininess,
                                            .fade = session.light.gradient_fade * range,
-                                           .to_light = light_of(session.light, camera)};
+                                           .to_light = light_of(session.light, camera),
+                                           .has_analytic_gradient = session.render.gradient == Gradient::analytic};
     }
     if (session.blend.size > 0.0) {
         const glm::dvec3 forward = glm::normalize(camera.target - camera.eye);

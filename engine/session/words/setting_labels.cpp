@@ -60,6 +60,7 @@ constexpr SettingLabel LABELS[] = {
     {"render.skip_empty_space", "skipping of empty space"},
     {"render.preintegration", "pre-integration of narrow peaks"},
     {"render.exact_integral", "exact integral"},
+    {"render.gradient", "gradient of shading"},
     {"render.smooth_borders", "smooth borders of groups"},
     {"render.saturation", "saturation of the picture"},
     {"view.arrangement", "arrangement of the panes"},

@@ -155,6 +155,9 @@ std::string special_sentence(const Session& was, const Session& is)
     if (was.render.preintegration != is.render.preintegration)
         return is.render.preintegration ? "Narrow peaks on: none is missed between samples"
                                         : "Narrow peaks off: samples may miss them";
+    if (was.render.gradient != is.render.gradient)
+        return is.render.gradient == Gradient::analytic ? "Gradient inside voxels: faster, and steps show at voxels"
+                                                        : "Gradient over one voxel: smooth shading";
     if (was.render.exact_integral != is.render.exact_integral)
         return is.render.exact_integral ? "Exact integral on: light is integrated between borders of voxels"
                                         : "Exact integral off: light is sampled in steps";

@@ -201,6 +201,32 @@ TEST_CASE_FIXTURE(OnDevice, "gradients are per physical length, whatever the vox
     }
 }
 
+TEST_CASE_FIXTURE(OnDevice, "the gradient inside a voxel is the derivative of its interpolation, by eight codes")
+{
+    TestVolume smooth = waves({40, 37, 35}), flat = noise_volume({33, 34, 35}, 41);
+    flat.spacing = {0.957, 0.957, 1.5};
+    for (const TestVolume& each : {smooth, flat})
+        for (const Paging paging : {Paging::never, Paging::always}) {
+            CAPTURE(int(paging));
+            Session session = shaded_session(busy_points(0.1), {24, 24});
+            session.render.paging = paging;
+            session.render.detail = 0.0;
+            load(each);
+            renderer().load(source_of(each), {.minimum = each.minimum, .maximum = each.maximum}, session.render);
+            const Camera camera = camera_along(volume(), {-0.5, 1, 0.7}, 60.0);
+            const Pixels smoothed = pixels_of(draw(session, camera));
+            session.render.gradient = Gradient::analytic;
+            check_shaded(*this, session, camera);
+            CHECK(rms_difference(pixels_of(draw(session, camera)), smoothed) > 1e-3);  // not the same derivative
+            Session unshaded = session;
+            unshaded.light.shaded = false;
+            const uint64_t reads = work(session, camera)[gpu::COUNTER_DENSITY_READS];
+            CHECK(reads == work(unshaded, camera)[gpu::COUNTER_DENSITY_READS]);
+            session.render.gradient = Gradient::central;
+            CHECK(double(reads) < 0.7 * double(work(session, camera)[gpu::COUNTER_DENSITY_READS]));
+        }
+}
+
 TEST_CASE_FIXTURE(OnDevice, "Marschner-Lobb is reconstructed as well as trilinear values and half-voxel differences do")
 {
     for (const auto& [side, measured_value, measured_degrees] : {std::tuple(64, 1.6e-2, 9.3), {128, 4.2e-3, 1.72}}) {

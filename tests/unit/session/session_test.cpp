@@ -80,7 +80,7 @@ const std::string EVERYTHING = R"({
   "blend": {"size": 0.75, "rate": 2, "color": "#204060"},
   "render": {"size": [640, 480], "step_voxels": 0.25, "opacity_limit": 0.9, "background": "#10203040",
              "sampling": "exact", "paging": "never", "detail": 0.5, "skip_empty_space": false,
-             "preintegration": true, "exact_integral": true, "smooth_borders": true, "saturation": 0.375},
+             "preintegration": true, "exact_integral": true, "gradient": "analytic", "smooth_borders": true, "saturation": 0.375},
   "view": {"arrangement": "slices", "stereo": {"output": "top_bottom", "eye_distance": 0.0625, "toe_in": true},
            "slices": {"black": -20, "white": 300.5, "paint_share": 0.25, "zoom": 3}, "overview_zoom": 1.5,
            "volume": false, "meshes": false, "cut_box": true, "solo": 7},
@@ -145,9 +145,19 @@ TEST_CASE("every key of a session is read")
     CHECK(session.light == Light{false, 0.1, 0.2, 0.3, 4, {1, 2, 3}, 0.5, {0.75, 9.5, 48, true, 1.5, false}});
     CHECK(session.blend == DistanceBlend{0.75, 2.0, color("#204060")});
     const glm::dvec4 background(color("#102030"), 64 / 255.0);
-    CHECK(session.render ==
-          RenderSettings{
-              {640, 480}, 0.25, 0.9, background, Sampling::exact, Paging::never, 0.5, false, true, true, true, 0.375});
+    CHECK(session.render == RenderSettings{{640, 480},
+                                           0.25,
+                                           0.9,
+                                           background,
+                                           Sampling::exact,
+                                           Paging::never,
+                                           0.5,
+                                           false,
+                                           true,
+                                           true,
+                                           Gradient::analytic,
+                                           true,
+                                           0.375});
     CHECK(session.view == ViewSettings{Arrangement::slices,
                                        {StereoOutput::top_bottom, 0.0625, true},
                                        {-20.0, 300.5, 0.25, 3.0},
@@ -315,7 +325,7 @@ TEST_CASE("keys that are not known are refused by their full name, with those th
     CHECK(refusal(with(R"("render": {"step": 1})")) ==
           "s.json: unknown key render.step; expected one of: size, quality, step_voxels, opacity_limit, background, "
           "sampling, "
-          "paging, detail, skip_empty_space, preintegration, exact_integral, smooth_borders, saturation");
+          "paging, detail, skip_empty_space, preintegration, exact_integral, gradient, smooth_borders, saturation");
     struct Case {
         std::string keys, name;
     };

@@ -46,6 +46,19 @@ bool sampling(RenderSettings& render)
     return is_other;
 }
 
+bool gradient(RenderSettings& render)
+{
+    int chosen = int(render.gradient);
+    row("Gradient");
+    const bool is_other = ImGui::Combo("##gradient", &chosen, "over one voxel\0inside a voxel\0");
+    hint(
+        "Differences that give shading its normals. Inside a voxel: half of the reads, but steps show where voxels "
+        "meet. "
+        "The exact integral always uses those over one voxel.");
+    render.gradient = Gradient(chosen);
+    return is_other;
+}
+
 bool paging(RenderSettings& render)
 {
     int chosen = int(render.paging);
@@ -93,6 +106,7 @@ void quality_panel(const Model& model, Actions& actions)
     bool is_other = numbers(render, is_reset, actions);
     is_other |= sampling(render);
     is_other |= paging(render);
+    is_other |= gradient(render);
     is_other |= ImGui::Checkbox("Skip empty space", &render.skip_empty_space);
     hint("Same picture, only faster. Switch it off for measurements only.");
     ImGui::BeginDisabled(render.step_voxels > MAX_PREINTEGRATED_STEP);
