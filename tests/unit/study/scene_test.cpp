@@ -44,10 +44,10 @@ TEST_CASE("a fill paints the voxels of the ball at or above the threshold, a flo
 {
     const StudyScene& scene = a_scene();
     const glm::dvec3 at = scene.trace().node(10).position;
-    const PaintOp fill{.brush = Brush::fill, .threshold = STUDY_THRESHOLD, .radius_voxels = 6.0, .path = {at}};
-    PaintOp flood = fill;
-    flood.brush = Brush::flood;
-    const VoxelSelection filled = scene.select(fill), flooded = scene.select(flood);
+    const auto selected_by = [&](Brush brush) {
+        return scene.select({.brush = brush, .threshold = STUDY_THRESHOLD, .radius_voxels = 6.0, .path = {at}});
+    };
+    const VoxelSelection filled = selected_by(Brush::fill), flooded = selected_by(Brush::flood);
     int64_t count = 0;
     for (int64_t z = 0; z < 80; ++z)
         for (int64_t y = 0; y < 80; ++y)
