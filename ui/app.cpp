@@ -310,13 +310,18 @@ bool App::panels_have_keyboard() const
            bench_->model().shows_palette;
 }
 
+/// Returns whether no frame can be drawn for so long that input must not wait for one any more.
+bool App::is_hidden() const
+{
+    constexpr double PATIENCE_S = 1.0;
+    return undrawable_since_s_ && window_.now_s() - *undrawable_since_s_ > PATIENCE_S;
+}
+
 /// After input whose effect the next event depends on (`decides`), holds back the rest until a frame shows that effect.
 std::vector<InputEvent> App::events_in_turn(double timeout_s)
 {
     for (InputEvent& event : window_.wait_events(timeout_s)) held_back_.push_back(std::move(event));
-    constexpr double HIDDEN_S = 1.0;  // a frame that waits longer is that of a hidden window, which may never be drawn
-    const bool is_hidden = undrawable_since_s_ && window_.now_s() - *undrawable_since_s_ > HIDDEN_S;
-    const bool awaits_frame = held_back_in_frame_ == ImGui::GetFrameCount() && !is_hidden;
+    const bool awaits_frame = held_back_in_frame_ == ImGui::GetFrameCount() && !is_hidden();
     return awaits_frame ? std::vector<InputEvent>() : std::exchange(held_back_, {});
 }
 
@@ -349,7 +354,7 @@ void App::handle_events(double timeout_s)
         const InputEvent& event = events[i];
         keep_drawing(AFTERGLOW_S);
         const auto* const key = std::get_if<KeyEvent>(&event.what);
-        if (key && comes_too_early(*key, window_)) {
+        if (key && !is_hidden() && comes_too_early(*key, window_)) {
             hold_back(events, i);
             break;
         }

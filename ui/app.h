@@ -70,6 +70,7 @@ private:
     double time_to_wait() const;
     bool ui_has_key(const KeyEvent& event) const;
     bool panels_have_keyboard() const;
+    bool is_hidden() const;
     std::vector<InputEvent> events_in_turn(double timeout_s);
     void hold_back(std::vector<InputEvent>& events, size_t first);
     bool decides(const InputEvent& event, bool is_for_ui) const;
