@@ -67,7 +67,7 @@ const Mistake MISTAKES[] = {
     {"a gradient of the wrong neighbour", "tubes_opaque", "library/density_exact.glsl",
      "f < 0.5 ? low - beyond : beyond - high", "f < 0.5 ? beyond - high : low - beyond"},
     {"gradients in voxels, not in space", "tubes_anisotropic", "library/sample.glsl",
-     "gradient_of(density) * params.inverse_spacing", "gradient_of(density)"},
+     "slope * params.inverse_spacing", "slope"},
     {"a volume's border forgotten", "tubes_opaque", "library/atlas.glsl", "return ivec3(code_border());",
      "return ivec3(0);"},
     {"leaps that go a step too far", "tubes_translucent", "rays/march.glsl", "exit / params.step - 0.01",

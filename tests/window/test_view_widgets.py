@@ -86,14 +86,18 @@ class Widgets(Seen):
     def drag(self, begin, by, *, finely=False, tail=()):
         """By so many pixels, with Shift where it is to be fine."""
         way = [(begin[0] + by[0] * step // 5, begin[1] + by[1] * step // 5) for step in range(1, 6)]
-        before = len(self.done())
+        before = len(self.settings())
         for event in (["mousemove", *begin], ["mousedown", 1], ["keydown", "shift"] if finely else [],
                       *(["mousemove", *place] for place in way), tail, ["mouseup", 1],
                       ["keyup", "shift"] if finely else []):
             if event:
                 self.do(*event, pause_s=0)
                 self.see_frames()
-        self.until(lambda: len(self.done()) > before, "what was dragged in the log")
+        self.until(lambda: len(self.settings()) > before, "what was dragged in the log")
+        known = -1
+        while known != len(self.settings()):   # the last place may be logged some frames later
+            known = len(self.settings())
+            self.see_frames()
 
     def last(self, *keys):
         """The value that was set last."""
