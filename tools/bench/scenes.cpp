@@ -275,9 +275,8 @@ std::vector<Run> runs_of(const Scene& scene, bool quick)
         }
     runs.push_back({"skipping off", "skipping", {"render.skip_empty_space=false"}});
     const std::string& text = scene.drawn.session_text;
-    if (text.find(R"("shaded":false)") == std::string::npos)
-        sweep("gradient inside voxels, step", "render.step_voxels", {2, 1, 0.5, 0.25, 0.125}, {1, 0.5, 0.25},
-              {"render.gradient=analytic"});
+    sweep("gradient inside voxels, step", "render.step_voxels", {2, 1, 0.5, 0.25, 0.125}, {1, 0.5, 0.25},
+          {"render.gradient=analytic"});
     if (text.find("\"occlusion\"") != std::string::npos)
         sweep("occlusion rays", "light.occlusion.rays", {8, 16, 32, 64, 128, 256}, {8, 64});
     if (scene.budget_device > 0)

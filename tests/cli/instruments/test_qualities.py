@@ -17,7 +17,8 @@ WORK = "reads"
 OTHER_WORK = {"sampling hardware", "reference"}
 # One table for all scenes is not on the front of each. More than SAME better in both:
 ALONE = {("peaks", "draft", "resolution 0.5"),        # step 1 misses narrow peaks, whatever the size of the picture
-         ("peaks", "draft", "coarse 0.7, step 1")}
+         ("peaks", "draft", "coarse 0.7, step 1"),
+         ("peaks", "draft", "gradient inside voxels, step 1")}   # nor whatever its shading
 
 
 def read(path):
