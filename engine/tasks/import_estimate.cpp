@@ -1,6 +1,8 @@
 #include "engine/tasks/import_estimate.h"
 
 #include "engine/projects/import_prepare.h"
+#include "engine/session/session.h"
+#include "engine/tasks/file_content.h"
 #include "engine/volume/grid.h"
 
 namespace shvr {
@@ -31,12 +33,22 @@ fs::path free_name_beside(const fs::path& path)
         if (fs::path free = sentence(path.string(), '-', number); !is_taken(free)) return free;
 }
 
+/// Fails for a session file, which several commands take in place of a volume.
+void refuse_session(const fs::path& path)
+{
+    std::error_code ignored;
+    if (lower_case(path.extension().string()) != ".json" || !fs::is_regular_file(path, ignored)) return;
+    if (what_is(path, nullptr).content != FileContent::session) return;
+    fail(path.string(), ": is a session; expected a volume; give the file that its key volume.path names");
+}
+
 }  // namespace
 
 std::unique_ptr<VolumeSource> open_for_import(const ImportTask& task)
 {
     const OpenOptions& choice = task.choice;
     const std::string volume = task.volume.string();
+    refuse_session(task.volume);
     if (task.raw.empty()) return open_volume(volume, choice);
     RawLayout layout = parse_raw_layout(task.raw);
     if (choice.spacing) layout.spacing = *choice.spacing;

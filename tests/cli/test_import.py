@@ -305,6 +305,9 @@ class Refusals(CliTest):
         header = Volume.noise((9, 8, 7), seed=1).write(self.folder)
         project = self.folder / "project"
         self.check_refused("import", self.folder / "missing.nhdr", project, says=["missing.nhdr"])
+        for volume in str(header), "https://example.org/scan.zarr":
+            session = self.write_json("scan.json", {"shvr_session": 1, "volume": {"path": volume}})
+            self.check_refused("import", session, project, says=["scan.json: is a session; expected a volume", "volume.path"])
         self.check_refused("import", header, project, "--crop", "0,0,0,9,8,8", says=["0,0,0 to 9,8,7"])
         self.check_refused("import", header, self.folder / "no/project", says=["no/project.part", "No such file"])
         self.check("import", header, project, "--quiet")

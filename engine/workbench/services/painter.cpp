@@ -5,6 +5,7 @@
 #include <numbers>
 #include <thread>
 
+#include "engine/remote/address.h"
 #include "engine/workbench/actions/action_rows.h"
 #include "engine/workbench/sight/words.h"
 
@@ -124,13 +125,15 @@ void Painter::advance_stroke()
 }
 
 /// Waits until strokes that have ended are fully painted, before other changes of annotation. The wait takes
-/// milliseconds unless bricks come from a slow disk. It ends after 2 s at most; the change then fails, and states why.
+/// milliseconds unless bricks come from a slow disk or a network. It ends after 2 s at most, after a tenth of a second
+/// if the volume is on another machine; the change then fails, and states why.
 void Painter::await_strokes()
 {
-    constexpr double MAX_WAIT_S = 2.0;
+    constexpr double MAX_WAIT_S = 2.0, MAX_WAIT_FOR_NETWORK_S = 0.1;
     constexpr std::chrono::microseconds TURN(200);
     const Annotator& annotator = document_->annotator;
-    const double until = options_.now_s() + MAX_WAIT_S;
+    const bool is_far = !document_->is_script() && leads_to_network(document_->session.volume_path);
+    const double until = options_.now_s() + (is_far ? MAX_WAIT_FOR_NETWORK_S : MAX_WAIT_S);
     while (annotator.stroke_is_running() && !annotator.stroke_is_open() && options_.now_s() < until) {
         attempt(painting_, [this] { follow_stroke(); });
         renderer_.scene().advance();

@@ -73,6 +73,7 @@ void Photographer::drop_large(const char* by)
 void Photographer::follow_screenshots()
 {
     if (document_->annotator.stroke_is_running()) drop_large("painting");  // only some parts would show it
+    if (document_->annotator.is_behind()) return;  // the picture lacks offsets whose voxels are being read
     const Screenshots::Turn turn =
         screenshots_.advance(document_->screen, stem(), is_still_, texts_of_picture(others_.pixels(), true),
                              [this] { return figure_of_picture(1); });

@@ -86,3 +86,28 @@ TEST_CASE_FIXTURE(PainterAlone, "painter: an open stroke follows the probe, and 
     CHECK(painter.finish_stroke().empty());
     CHECK(painted() > at_one_place);
 }
+
+TEST_CASE_FIXTURE(PainterAlone, "painter: the wait for an ended stroke is short where its bricks come over a network")
+{
+    desk.options.now_s = [this] { return later_s += 0.06; };
+    const auto begin_long_stroke = [this] {
+        Annotator& annotator = document().annotator;
+        annotator.begin_stroke(document().stroke());
+        for (int i = 0; i < 400; ++i) annotator.extend_stroke({10.0 + 20.0 * (i % 2), 18.0, 16.0});
+        annotator.end_stroke();
+    };
+    document().session.volume_path = "https://example.org/scan.zarr";
+    begin_long_stroke();
+    const double before_s = later_s;
+    painter.await_strokes();
+    CHECK(painter.model().is_painting);
+    CHECK(later_s - before_s < 0.5);
+    document().annotator.drop_strokes();
+
+    document().session.volume_path.clear();
+    begin_long_stroke();
+    const double then_s = later_s;
+    painter.await_strokes();
+    CHECK((!painter.model().is_painting || later_s - then_s >= 2.0));
+    document().annotator.drop_strokes();
+}
