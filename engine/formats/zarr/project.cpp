@@ -193,7 +193,9 @@ ProjectRecord read_project_record(const Path& file)
 ProjectRecord project_record_of(const JsonDocument& document)
 {
     const JsonNode root = document.root();
-    root["shvr_volume"].whole(VERSION, VERSION);
+    if (const JsonNode version = root["shvr_volume"]; version.whole(1, 1 << 30) > VERSION)
+        throw NewerProject(version.refusal(sentence(
+            VERSION, ", the newest that this version of SHVR knows: open the project with the one that wrote it")));
     ProjectRecord record;
     record.source = root["source"].any_text();
     record.preparation = root["preparation"].any_text();

@@ -3,10 +3,18 @@
 
 #include <span>
 
+#include "engine/base/error.h"
 #include "engine/base/json.h"
 #include "engine/formats/zarr/project.h"
 
 namespace shvr {
+
+/// A newer version of SHVR wrote the record. A damaged record is ignored, but not this one: the other files of the
+/// project may have newer forms, too, and a save would damage them.
+class NewerProject : public Error {
+public:
+    using Error::Error;
+};
 
 /// As read_project_record.
 ProjectRecord project_record_of(const JsonDocument& document);

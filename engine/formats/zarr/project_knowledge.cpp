@@ -42,6 +42,8 @@ void try_to(const Read& read, std::vector<std::string>& warnings)
 {
     try {
         read();
+    } catch (const NewerProject&) {
+        throw;
     } catch (const Error& error) {
         warnings.push_back(sentence(error.what(), "; it is not used"));
     }

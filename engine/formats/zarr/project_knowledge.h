@@ -17,7 +17,7 @@ struct ProjectKnowledge {
 };
 
 /// Copies the record's data about the volume into `info`, and passes the checksums to verify to `volumes`, the image's
-/// levels. Damaged parts are ignored with a warning, so the image still opens.
+/// levels. Damaged parts are ignored with a warning, so the image still opens; a project of a newer version is refused.
 ProjectKnowledge read_project_knowledge(const std::filesystem::path& folder, VolumeInfo& info,
                                         std::vector<ZarrVolume>& volumes);
 

@@ -40,17 +40,21 @@ class Versions(CliTest):
                 (project / "shvr" / "session.journal").unlink()
                 self.annotate(project, expected)
 
-    def test_a_session_of_a_newer_version_is_refused_and_nothing_is_changed(self):
-        project = self.unpack("project_1.tar.xz")
-        session = project / "shvr" / "session.json"
-        session.write_text(session.read_text().replace('"shvr_session": 1', '"shvr_session": 2'))
+    def test_a_session_or_project_of_a_newer_version_is_refused_and_nothing_is_changed(self):
+        for name, key in [("session.json", "shvr_session"), ("volume.json", "shvr_volume")]:
+            with self.subTest(name=name):
+                self.check_newer_is_refused(self.unpack("project_1.tar.xz"), name, key)
+
+    def check_newer_is_refused(self, project, name, key):
+        file = project / "shvr" / name
+        file.write_text(file.read_text().replace(f'"{key}": 1', f'"{key}": 2'))
         before = files_of(project)
         script = self.write_script("paint.jsonl", [{"op": "node", "at": [5, 5, 5], "radius": 1, "group": 1},
                                                    {"op": "save"}])
         for command in [["annotate", project, "--script", script], ["annotate", project, "--script", script, "--fresh"],
                         ["export", project, "--mask", self.folder / "a.mask"],
                         ["render", project, "-o", self.folder / "a.png"], ["info", project]]:
-            self.check_refused(*command, says=["session.json", "shvr_session is 2", "expected 1"])
+            self.check_refused(*command, says=[name, f"{key} is 2", "expected 1"])
             self.assertEqual(files_of(project), before, command)
         self.assertFalse((self.folder / "a.mask").exists() or (self.folder / "a.png").exists())
 
