@@ -115,6 +115,7 @@ MAY_INCLUDE = {
     "engine/workbench/bindings",
     "ui/panels/look": "engine/session engine/workbench/curves engine/workbench/models engine/workbench/actions "
     "engine/workbench/edits engine/workbench/bindings ui/panels",
+    "ui/panels/banners": "engine/base engine/workbench/models engine/workbench/actions ui/panels",
     "ui/panels/dialogs": "engine/base engine/session engine/workbench/models engine/workbench/actions "
     "engine/workbench/lists engine/workbench/bindings engine/workbench/forms engine/tasks ui/files ui/panels",
     "ui/panels/touch": "engine/workbench/models engine/workbench/lists engine/workbench/edits engine/workbench/bindings "

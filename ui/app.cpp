@@ -195,6 +195,7 @@ bool App::refuses_to_close(const std::string& why)
     const bool is_kept = document.work_is_saved() || document.annotator.work().is_kept();
     if (is_kept && was_asked_to_close_) return false;
     was_asked_to_close_ = true;
+    bench_->note_kept_open(why);
     bench_->say("The window stays open, since not all could be saved: " + why +
                     (document.work_is_saved() ? "; close it again to leave without saving"
                      : is_kept                ? "; all paint is in the journal: close it again to leave it there"

@@ -99,6 +99,8 @@ public:
     using Leave = ui::Leave;
     Leave leave(std::string& why) { return services_.saver.leave(why); }
     bool is_saving() const { return services_.saver.is_saving(); }
+    /// Notes that the window was to be closed, and stays open because of `why`, a reason that `leave` gave.
+    void note_kept_open(const std::string& why) { services_.saver.note_kept_open(why); }
     /// Cancels jobs that would delay closing: opening, imports, exports, labelling, comparing. Saves continue.
     void cancel_tasks() { services_.tasks.cancel_all(); }
     /// Returns whether any job is displayed.

@@ -210,7 +210,13 @@ class Writers(Seen):
         self.assertEqual({name: after[name] for name in before if name != "session.json"},
                          {name: before[name] for name in before if name != "session.json"})
         self.open_scan(session, preferences={"hints_seen": 3})
+        # The question can be put off, which is said until it is answered.
+        self.click_on("Decide later")
+        self.see("Nothing can be painted, traced or saved until you have decided", "Put off")
+        self.see_no_more("Take the files")
+        self.click_on("Decide now...", "Put off")
         self.click_on("Take the files")
+        self.see_no_more("", "Put off")
         journal = self.folder / "session.journal"
         self.until(lambda: journal.read_bytes() != before["session.journal"], "step in the journal")
         self.check_key("Ctrl+Z", "undo")

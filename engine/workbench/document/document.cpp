@@ -14,6 +14,7 @@
 #include "engine/session/label_looks.h"
 #include "engine/session/lasting_settings.h"
 #include "engine/session/words/setting_words.h"
+#include "engine/workbench/document/savable.h"
 #include "engine/workbench/touch/felt_relevance.h"
 
 namespace shvr::ui {
@@ -91,6 +92,7 @@ Document::Read Document::read(OpenedSession opened, const std::filesystem::path&
         opening.hold.reset();
         open_work(opening);
     }
+    if (!read.work->only_looks()) read.unsavable = why_not_savable(path);
     read.opened = std::move(opened);
     return read;
 }
@@ -108,6 +110,7 @@ Document::Document(Renderer& renderer, Read read, const View::Options& view_opti
       holder(std::move(read.holder)),
       outside(std::move(read.outside)),
       remote(std::move(read.remote)),
+      unsavable(std::move(read.unsavable)),
       is_script_(read.is_script),
       overridden_(std::move(read.overridden)),
       session_text_(std::move(read.session_text))

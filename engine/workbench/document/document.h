@@ -37,6 +37,7 @@ struct Document {
         std::string holder{};
         std::string outside{};
         std::string remote{};
+        std::string unsavable{};
         std::optional<std::string> session_text{};
         bool is_script = false;  ///< as WorkbenchOptions::is_script
     };
@@ -67,6 +68,8 @@ struct Document {
     std::string outside;                ///< files that the session may not write, since they are outside its folder;
                                         ///< empty: none, or the user has agreed (annotation_files.h)
     std::string remote;                 ///< address of the volume if that was opened, not a session that names it
+    std::string unsavable;              ///< why no file can be written next to the session, as found when it was opened
+                                        ///< (savable.h); empty: one can, or a save has succeeded since
     bool drags_node = false;            ///< the selection follows the probe
     glm::dvec3 drag_from{0.0};          ///< where the tools were when the drag began, in voxels: one selected node
                                         ///< moves to the probe, several parts move along

@@ -48,6 +48,12 @@ struct SaveModel {
     bool is_saving = false;               ///< a save is in progress; changes made since it began are not part of it
     bool is_saving_as = false;            ///< the save is under another name: until it ends, commands are refused
     std::span<const Dispute> disputes{};  ///< saved files that others changed; the user must choose; empty: none
+    /// Why work cannot be saved now: the folder or the journal cannot be written to, or the last save failed. Empty:
+    /// nothing is in the way, as far as is known.
+    std::string trouble{};
+    bool is_trouble_of_folder = false;  ///< nothing can be written next to the session: only another folder helps
+    bool is_kept = true;                ///< nothing would be lost if the program ended now, except settings
+    bool kept_window_open = false;      ///< the window was to be closed, and was not because of this trouble
 };
 
 }  // namespace shvr::ui

@@ -21,8 +21,9 @@ void Saver::advance()
 
 void Saver::begin_document()
 {
-    has_tried_view_ = is_leaving_ = false;
+    has_tried_view_ = is_leaving_ = kept_window_open_ = false;
     save_failure_.clear();
+    trouble_.clear();
 }
 
 void Saver::act(const SaveOp&)
@@ -141,10 +142,14 @@ void Saver::end_save(const Jobs::Finished& job)
         save_failure_ = job.was_cancelled ? "the save was cancelled" : job.failure;
         reopens_when_saved_ = false;
         if (!save->is_asked_for) return;
+        if (!job.was_cancelled) trouble_ = save_failure_;
         const std::string rest = unpainted + kept + "; what was not saved is in the journal";
         return job.was_cancelled ? say("Cancelled: " + job.what + rest, Weight::warning)
                                  : say(job.failure + unpainted + kept, Weight::error);
     }
+    trouble_.clear();
+    document_->unsavable.clear();
+    kept_window_open_ = false;
     if (save->saving->is_under_another_name()) {
         others_.look_again();
         keeper_.note_opened(document_->session_path);
@@ -198,6 +203,12 @@ Leave Saver::leave(std::string& why)
     has_tried_view_ = false;
     is_leaving_ = true;
     return Leave::later;
+}
+
+void Saver::note_kept_open(const std::string& why)
+{
+    kept_window_open_ = true;
+    if (trouble_.empty()) trouble_ = why;
 }
 
 Work::Saved Saver::finish_save(const Progress& progress)
@@ -267,10 +278,19 @@ SaveModel Saver::model() const
 {
     if (!document_) return {};
     const Work& work = document_->annotator.work();
-    return {.is_saved = document_->is_saved(),
-            .is_saving = is_saving(),
-            .is_saving_as = work.is_saving_as(),
-            .disputes = work.disputes()};
+    SaveModel model{.is_saved = document_->is_saved(),
+                    .is_saving = is_saving(),
+                    .is_saving_as = work.is_saving_as(),
+                    .disputes = work.disputes(),
+                    .trouble = work.journal().failure};
+    if (document_->only_looks()) return model;  // another notice says so
+    if (model.trouble.empty()) model.trouble = trouble_;
+    model.is_trouble_of_folder = !document_->unsavable.empty();
+    if (model.trouble.empty()) model.trouble = document_->unsavable;
+    if (model.trouble.empty()) return model;
+    model.is_kept = document_->work_is_saved() || work.is_kept();
+    model.kept_window_open = kept_window_open_;
+    return model;
 }
 
 }  // namespace shvr::ui

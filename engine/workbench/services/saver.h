@@ -47,6 +47,9 @@ public:
     /// Handles a finished job of the worker thread that writes saves.
     void end(const Jobs::Finished& job);
     Leave leave(std::string& why);
+    /// Notes that the window was to be closed, and stays open since work cannot be saved; the model says so until a
+    /// save succeeds.
+    void note_kept_open(const std::string& why);
     /// Waits for the save in progress. Returns the written parts. Fails with the reason if a part could not be written.
     /// An exception from `progress` cancels the save.
     Work::Saved finish_save(const Progress& progress = {});
@@ -77,8 +80,10 @@ private:
     std::unique_ptr<Save> save_;
     /// The next save, which starts once the stroke or save in progress has ended. Empty path: a save in place.
     std::optional<std::filesystem::path> wanted_save_;
-    std::string unpainted_;          ///< why part of the stroke before the save could not be painted
-    std::string save_failure_;       ///< why the last save failed; empty if it succeeded
+    std::string unpainted_;     ///< why part of the stroke before the save could not be painted
+    std::string save_failure_;  ///< why the last save failed; empty if it succeeded
+    std::string trouble_;       ///< the same, until a save succeeds or another document is open
+    bool kept_window_open_ = false;
     Work::Saved saved_;              ///< result of the last save
     bool has_tried_view_ = false;    ///< the view was saved, or could not be; the document may be closed
     bool is_leaving_ = false;        ///< the user wants to leave; if the save fails, leaving is refused

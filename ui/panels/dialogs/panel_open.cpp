@@ -164,10 +164,17 @@ std::optional<std::filesystem::path> answer_of(FileChooser& chooser, Dialog dial
     return path;
 }
 
+/// Suggests a name next to the session or, if nothing can be written there, in the home folder.
+static std::filesystem::path suggested_name(const Model& model)
+{
+    const std::filesystem::path beside =
+        std::filesystem::path(model.session_path).replace_extension().string() + "-2.json";
+    return model.is_trouble_of_folder ? home_folder() / beside.filename() : beside;
+}
+
 void name_and_take_dialogs(const Model& model, Actions& actions)
 {
-    const std::filesystem::path copy =
-        std::filesystem::path(model.session_path).replace_extension().string() + "-2.json";
+    const std::filesystem::path copy = suggested_name(model);
     if (const auto path = answer_of(saving, Dialog::save_as, copy, model, actions)) actions.push_back(SaveAs{*path});
     if (const auto path = annotating.draw()) actions.push_back(WorkOnCopy{*path});
     if (const auto path = labelled.draw())

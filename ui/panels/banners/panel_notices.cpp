@@ -1,12 +1,11 @@
 // Notices for the user before work begins: another process is writing the project, or saved files were changed.
 
-#include <algorithm>
 #include <optional>
 
 #include <imgui/imgui.h>
 
+#include "ui/panels/banners/banner.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/style.h"
 #include "ui/panels/widgets.h"
 
 namespace shvr::ui {
@@ -15,30 +14,6 @@ namespace {
 
 constexpr const char* QUESTION = "Saved annotation was changed by another program";
 constexpr const char* UNCLEAR = "Scan or annotation?";
-
-constexpr ImGuiWindowFlags BANNER = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize |
-                                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
-
-/// Begins a banner with its upper left corner at `begin`.
-void begin_banner(const char* name, const glm::vec2& begin, float width)
-{
-    ImGui::SetNextWindowPos({begin.x, begin.y});
-    ImGui::SetNextWindowSize({std::max(width, 1.0f), 0.0f});
-    ImGui::PushStyleColor(ImGuiCol_WindowBg, color_of(ColorRole::notice));
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0.0f);
-    ImGui::Begin(name, nullptr, BANNER);
-}
-
-/// Ends it, and returns its height.
-float end_banner()
-{
-    const float height = ImGui::GetWindowHeight();
-    ImGui::End();
-    ImGui::PopStyleVar();
-    ImGui::PopStyleColor();
-    return height;
-}
 
 /// Lists work that was recovered or set aside, until the user dismisses the banner. Returns its height.
 float recovered_banner(const Model& model, const glm::vec2& begin, float width, Actions& actions)
@@ -104,9 +79,25 @@ float labels_banner(const Model& model, const glm::vec2& begin, float width, Act
     return end_banner();
 }
 
+/// The session about which the question was put off; empty: none.
+std::filesystem::path put_off;
+
+/// Says, after the question was put off, that nothing is saved until it is answered. Returns its height.
+float put_off_banner(const glm::vec2& begin, float width)
+{
+    begin_banner("Put off", begin, width);
+    if (ImGui::Button("Decide now...")) put_off.clear();
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::TextUnformatted(
+        "Nothing can be painted, traced or saved until you have decided which annotation is right: the saved files "
+        "that another program changed, or the work in the journal.");
+    ImGui::PopTextWrapPos();
+    return end_banner();
+}
+
 void question_of_belief(const Model& model, Actions& actions)
 {
-    if (model.disputes.empty()) return;
+    if (model.disputes.empty() || put_off == model.session_path) return;
     if (!ImGui::IsPopupOpen(QUESTION)) ImGui::OpenPopup(QUESTION);
     ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
     ImGui::SetNextWindowSize({40.0f * ImGui::GetFontSize(), 0.0f});
@@ -117,10 +108,10 @@ void question_of_belief(const Model& model, Actions& actions)
     ImGui::PopTextWrapPos();
     const bool takes_files = ImGui::Button("Take the files, as a step that undo takes back");
     const bool takes_journal = ImGui::Button("Keep the work; the next save keeps the files under other names");
-    if (takes_files || takes_journal) {
-        actions.push_back(ChooseBelief{takes_files});
-        ImGui::CloseCurrentPopup();
-    }
+    const bool is_put_off = ImGui::Button("Decide later, and look at the scan first");
+    if (takes_files || takes_journal) actions.push_back(ChooseBelief{takes_files});
+    if (is_put_off) put_off = model.session_path;
+    if (takes_files || takes_journal || is_put_off) ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
 }
 
@@ -161,6 +152,9 @@ float notices(const Model& model, const glm::vec2& begin, float width, Actions& 
         top += remote_banner(model, begin, width, actions);
     else if (!model.holder.empty() || !model.outside.empty())
         top += read_only_banner(model, begin, width, actions);
+    if (model.disputes.empty()) put_off.clear();
+    if (!put_off.empty() && put_off == model.session_path) top += put_off_banner({begin.x, top}, width);
+    if (!model.trouble.empty()) top += trouble_banner(model, {begin.x, top}, width, actions);
     if (!model.looks_like_labels.empty()) top += labels_banner(model, {begin.x, top}, width, actions);
     if (!model.recovered.empty()) top += recovered_banner(model, {begin.x, top}, width, actions);
     question_of_belief(model, actions);
