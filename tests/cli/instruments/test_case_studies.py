@@ -93,6 +93,18 @@ class CaseStudies(CliTest):
         self.assertGreater(scores["node_score"], 0.8)
         self.assertEqual(pictures, {"4.4", "4.7-before", "4.7-after", "5.1a", "5.1c", "5.2b", "5.2c"})
 
+    def test_every_figure_has_a_caption(self):
+        named = set()
+        for name, letters, last in re.findall(r"`([0-9.]+)([-a-zA-Z]*)[.]png`(?: to `[0-9.]+([a-d])[.]png`)?",
+                                              (STUDIES / "README.md").read_text()):
+            ends = [name + letters] if not last else [name + chr(code) for code in range(ord(letters), ord(last) + 1)]
+            for end in ends:
+                named |= ({end.replace("SPECIES", species) for species in ("gerbera", "helianthus", "bellis")}
+                          if "SPECIES" in end else {end})
+        lines = [line.split("\t") for line in (STUDIES / "captions.txt").read_text().splitlines()]
+        self.assertTrue(all(len(line) == 2 and len(line[1]) > 12 for line in lines))
+        self.assertEqual(sorted(line[0] for line in lines), sorted(named))
+
     @unittest.skipUnless(IS_SLOW, "slow")
     def test_every_figure_of_the_table_is_drawn(self):
         _, pictures = self.study("figures")
