@@ -107,6 +107,11 @@ target_link_libraries(shvr_workbench_bench PRIVATE ${shvr_modules})
 add_custom_target(bench_workbench DEPENDS shvr_workbench_bench USES_TERMINAL WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}
     COMMAND shvr_workbench_bench)
 
+# One operation on groups: tools/bench/editor.py and its test run it.
+add_executable(shvr_operation_bench tests/tools/operation_bench.cpp)
+target_link_libraries(shvr_operation_bench PRIVATE shvr_engine)
+target_compile_definitions(shvr_operation_bench PRIVATE SHVR_BUILD_TYPE="${CMAKE_BUILD_TYPE}")
+
 # One program for all `sources` of tests/KIND, one test for each file among them.
 function(shvr_test_program kind program timeout)
     set(sources ${ARGN})
