@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "engine/annotation/meshes/group_surfaces.h"
+#include "engine/annotation/meshes/decimated_surfaces.h"
 #include "engine/base/text.h"
 #include "engine/formats/export/surface_export.h"
 #include "engine/projects/import_memory.h"
@@ -39,10 +39,11 @@ std::filesystem::path file_of_group(const std::filesystem::path& path, int group
     return path.parent_path() / (path.stem().string() + "-" + std::to_string(group) + path.extension().string());
 }
 
-/// The surfaces of some groups, where the volume lies.
+/// The surfaces of some groups, GroupSurfaces or DecimatedSurfaces, where the volume lies.
+template <class Surfaces>
 class PlacedSurfaces final : public SurfaceParts {
 public:
-    PlacedSurfaces(GroupSurfaces& surfaces, const AnnotationView& annotation, Positions positions)
+    PlacedSurfaces(Surfaces& surfaces, const AnnotationView& annotation, Positions positions)
         : surfaces_(surfaces), annotation_(annotation), space_(space_of(annotation.volume)), positions_(positions)
     {
         comments = {"unit " + space_.unit, in_words(space_, positions)};
@@ -57,7 +58,7 @@ public:
         parts.clear();
         for (const uint8_t group : groups) {
             const ColorGroup look = group_of(annotation_.groups, group);
-            const GroupSurfaces::Size& size = surfaces_.size_of(group);
+            const GroupSurfaces::Size size = surfaces_.size_of(group);
             parts.push_back({.group = group,
                              .name = look.name,
                              .color = look.color,
@@ -89,11 +90,30 @@ private:
         return positions_ == Positions::physical ? physical_of(space_, position) : position;
     }
 
-    GroupSurfaces& surfaces_;
+    Surfaces& surfaces_;
     const AnnotationView& annotation_;
     TraceSpace space_;
     Positions positions_;
 };
+
+/// Writes the files, and calls `wrote` after each.
+template <class Surfaces>
+SurfaceResult write(Surfaces& surfaces, const SurfaceTask& task, const AnnotationView& annotation,
+                    const std::vector<uint8_t>& groups, const std::vector<std::filesystem::path>& files,
+                    ProgressReporter& reporter, SurfaceResult result,
+                    const std::function<void(const SurfaceResult& so_far)>& wrote)
+{
+    PlacedSurfaces<Surfaces> placed(surfaces, annotation, task.space);
+    for (const uint8_t group : groups) result.triangles_by_group[group] = int64_t(surfaces.size_of(group).triangles);
+    for (size_t i = 0; i < files.size(); ++i) {
+        const std::filesystem::path path = written_path(files[i]);
+        placed.take(files.size() == 1 ? groups : std::vector{groups[i]});
+        export_surfaces(path, placed, reporter.begin("writing " + path.string()));
+        result.written.push_back(path.string());
+        if (wrote) wrote(result);
+    }
+    return result;
+}
 
 /// The groups that the task states, or else all that are painted.
 std::vector<uint8_t> groups_to_write(const SurfaceTask& task, const Mask& mask)
@@ -127,6 +147,9 @@ void fields(Fields& f, SurfaceTask& task)
     f.text("groups", task.groups, {.meaning = "groups to write, such as 3 or 1+4", .standard = "all that are painted"});
     f.whole("smooth", task.smooth, 0, MAX_SURFACE_STEPS,
             {"steps that smooth surfaces, within half a voxel, with the volumes of groups kept; 0: faces of voxels"});
+    f.number("decimate", task.decimate, {MIN_SURFACE_SHARE, 1.0},
+             {"share of the triangles to keep; vertices of the full surface stay within a voxel of it, and groups that "
+              "touch keep equal borders"});
     f.choice("space", task.space, {"where other programs show the volume, or voxel * spacing"});
     f.whole("budget_host_mib", task.budget_host_mib, 0, MAX_SURFACE_MIB,
             {"memory that it may take, in MiB; 0: three quarters of what the process was given"});
@@ -142,6 +165,9 @@ void check(const SurfaceTask& task)
     if (task.smooth < 0 || task.smooth > MAX_SURFACE_STEPS)
         throw UsageError(sentence(option_name(task.names, "smooth"), " is ", task.smooth, "; expected 0 to ",
                                   MAX_SURFACE_STEPS, " steps"));
+    if (!(task.decimate >= MIN_SURFACE_SHARE && task.decimate <= 1.0))
+        throw UsageError(sentence(option_name(task.names, "decimate"), " is ", task.decimate, "; expected a share of ",
+                                  "the triangles, ", MIN_SURFACE_SHARE, " to 1"));
 }
 
 std::vector<std::filesystem::path> surface_files(const SurfaceTask& task, const Mask& mask)
@@ -172,17 +198,12 @@ SurfaceResult run(const SurfaceTask& task, const AnnotationView& annotation, Pro
                                              .spacing = annotation.volume.spacing,
                                              .memory = uint64_t(import_budget(task.budget_host_mib << 20)),
                                              .progress = reporter.begin("making surfaces")});
-    PlacedSurfaces placed(surfaces, annotation, task.space);
-    SurfaceResult result;
-    for (const uint8_t group : groups) result.triangles_by_group[group] = int64_t(surfaces.size_of(group).triangles);
-    for (size_t i = 0; i < files.size(); ++i) {
-        const std::filesystem::path path = written_path(files[i]);
-        placed.take(files.size() == 1 ? groups : std::vector{groups[i]});
-        export_surfaces(path, placed, reporter.begin("writing " + path.string()));
-        result.written.push_back(path.string());
-        if (wrote) wrote(result);
-    }
-    return result;
+    if (task.decimate >= 1.0) return write(surfaces, task, annotation, groups, files, reporter, {}, wrote);
+    DecimatedSurfaces fewer(surfaces, {.share = task.decimate,
+                                       .spacing = annotation.volume.spacing,
+                                       .memory = uint64_t(import_budget(task.budget_host_mib << 20)),
+                                       .progress = reporter.begin("decimating surfaces")});
+    return write(fewer, task, annotation, groups, files, reporter, {.decimation_error = fewer.error()}, wrote);
 }
 
 }  // namespace shvr

@@ -2,18 +2,22 @@
 // Exports surfaces of painted groups for other programs, for `shvr export --surface`. The file's extension determines
 // the format. The annotation as in export_task.h.
 
+#include <optional>
+
 #include "engine/tasks/export_task.h"
 
 namespace shvr {
 
 inline constexpr int MAX_SURFACE_STEPS = 1000;
+inline constexpr double MIN_SURFACE_SHARE = 0.001;
 
 struct SurfaceTask {
     static constexpr const char* TITLE = "Export surfaces";
 
     std::filesystem::path surface;
-    std::string groups;  ///< numbers joined by "+"; empty: all painted groups
-    int smooth = 20;     ///< steps
+    std::string groups;     ///< numbers joined by "+"; empty: all painted groups
+    int smooth = 20;        ///< steps
+    double decimate = 1.0;  ///< share of the triangles to keep; 1: all
     Positions space = Positions::physical;
     int64_t budget_host_mib = 0;  ///< memory that it may take; 0: three quarters of the machine's memory
 
@@ -24,6 +28,9 @@ void fields(Fields& f, SurfaceTask& task);
 struct SurfaceResult {
     std::vector<std::string> written;  ///< paths of the written files, in order
     std::map<int, int64_t> triangles_by_group;
+    /// Every vertex before decimation is within this distance of the written surface, in the volume's unit. Null
+    /// without decimation.
+    std::optional<double> decimation_error{};
 };
 
 /// Checks the groups' numbers, the file's name and its folder.

@@ -87,6 +87,7 @@ Json to_json(const ExportResult& result, const SurfaceResult& surfaces)
             {"length_by_group", by_group(result.length_by_group, 1.0)},
             {"unit", result.unit},
             {"triangles_by_group", by_group(surfaces.triangles_by_group, 1.0)},
+            {"decimation_error", surfaces.decimation_error ? Json(*surfaces.decimation_error) : Json(nullptr)},
             {"left_out", result.left_out}};
 }
 
@@ -128,7 +129,7 @@ Json joined(const SplitJob& job)
     for (const std::filesystem::path& piece : job.all_pieces()) {
         const Json told = Json::parse(read_text(piece, int64_t{64} << 20), nullptr, false);
         const bool is_piece = told.is_object() && told.contains("written") && told.contains("left_out") &&
-                              told.contains("triangles_by_group");
+                              told.contains("triangles_by_group") && told.contains("decimation_error");
         if (!is_piece)
             fail(piece.string(),
                  ": is not the piece of a task of shvr export; expected one: remove it, and run the "
@@ -140,6 +141,7 @@ Json joined(const SplitJob& job)
         for (const char* key : {"written", "left_out"})
             for (const Json& each : told[key]) all[key].push_back(each);
         all["triangles_by_group"].update(told["triangles_by_group"]);
+        if (!told["decimation_error"].is_null()) all["decimation_error"] = told["decimation_error"];
     }
     return all;
 }
@@ -251,6 +253,14 @@ void add_export(CLI::App& program)
         ->capture_default_str()
         ->check(CLI::Range(0, MAX_SURFACE_STEPS))
         ->needs(surface);
+    command
+        ->add_option("--decimate", options->surface_task.decimate,
+                     "Share of the triangles of surfaces to keep, such as 0.1; more stay where a vertex of the full "
+                     "surface would be farther than a voxel from it, or a volume would change by 0.4 %, and where "
+                     "three groups meet. Groups that touch keep equal borders")
+        ->type_name("SHARE")
+        ->check(CLI::Range(MIN_SURFACE_SHARE, 1.0))
+        ->needs(surface);
     add_host_budget_option(
         *command, options->common,
         "Host memory that surfaces may take; unless stated, three quarters of what the process was given");
@@ -275,7 +285,7 @@ void add_export(CLI::App& program)
         "way, "
         "traces,\nmeshes and surfaces in comments; in TIFF, which has no place for it, only SHVR reads it.\n"
         "Example:\n  shvr export scan/ --trace veins.swc --mesh veins.ply --metrics veins.csv\n"
-        "  shvr export scan/ --surface 1+3:parts.glb");
+        "  shvr export scan/ --surface 1+3:parts.glb --decimate 0.2");
     command->callback([options] { run_export(*options); });
 }
 

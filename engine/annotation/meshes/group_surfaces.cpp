@@ -126,6 +126,28 @@ void GroupSurfaces::for_each_vertex(uint8_t group, const VisitVertex& visit, con
 
 void GroupSurfaces::for_each_triangle(uint8_t group, const VisitTriangle& visit, const Progress& progress)
 {
+    visit_triangles(
+        group,
+        [&](const SurfaceFace& face, const std::array<uint8_t, 3>& corners, const glm::uvec3& indices) {
+            visit(indices, {face.at[corners[0]], face.at[corners[1]], face.at[corners[2]]});
+        },
+        progress);
+}
+
+void GroupSurfaces::for_each_border_triangle(uint8_t group, const VisitBorderTriangle& visit, const Progress& progress)
+{
+    visit_triangles(
+        group,
+        [&](const SurfaceFace& face, const std::array<uint8_t, 3>&, const glm::uvec3& indices) {
+            visit(indices, face.below == group ? face.above : face.below);
+        },
+        progress);
+}
+
+/// `visit(face, corners, indices)`: the triangle's vertices as those of the face and as those of the group.
+template <class Visit>
+void GroupSurfaces::visit_triangles(uint8_t group, const Visit& visit, const Progress& progress)
+{
     number_vertices(group);
     CellView view;
     const auto index_of_vertex = [&](const SurfaceFace& face, bool is_below, int vertex) {
@@ -160,9 +182,9 @@ void GroupSurfaces::for_each_triangle(uint8_t group, const VisitTriangle& visit,
             for (int i = 0; i < triangles.count; ++i) {
                 auto [a, b, c] = triangles.vertices[size_t(i)];
                 if (!is_below) std::swap(b, c);  // seen from outside the group
-                visit({index_of_vertex(face, is_below, a), index_of_vertex(face, is_below, b),
-                       index_of_vertex(face, is_below, c)},
-                      {face.at[a], face.at[b], face.at[c]});
+                visit(face, {a, b, c},
+                      glm::uvec3(index_of_vertex(face, is_below, a), index_of_vertex(face, is_below, b),
+                                 index_of_vertex(face, is_below, c)));
             }
         });
     }

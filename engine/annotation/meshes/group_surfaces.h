@@ -35,6 +35,10 @@ public:
     using VisitTriangle = std::function<void(const glm::uvec3& indices, const std::array<glm::dvec3, 3>& positions)>;
     void for_each_vertex(uint8_t group, const VisitVertex& visit, const Progress& progress = {}) const;
     void for_each_triangle(uint8_t group, const VisitTriangle& visit, const Progress& progress = {});
+    /// The same triangles in the same order, with the group on their other side (0: unpainted). The triangles between
+    /// two groups come in one order, whichever of the two is visited; the last two corners are exchanged.
+    using VisitBorderTriangle = std::function<void(const glm::uvec3& indices, uint8_t other)>;
+    void for_each_border_triangle(uint8_t group, const VisitBorderTriangle& visit, const Progress& progress = {});
 
     /// Cost: cells of 32^3 corners with a surface, and the points in them.
     size_t cells() const { return points_.cells().size(); }
@@ -42,6 +46,8 @@ public:
 
 private:
     void count(const Progress& progress);
+    template <class Visit>
+    void visit_triangles(uint8_t group, const Visit& visit, const Progress& progress);
     void number_vertices(uint8_t group);
 
     SurfacePoints points_;

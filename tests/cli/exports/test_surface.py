@@ -183,6 +183,42 @@ class Surface(CliTest):
         self.assertGreater(touching, 5)
         self.assertGreaterEqual(len(found[0] & found[1]), 2 * touching)
 
+    def test_decimated_surfaces_of_two_commands_are_closed_and_share_borders(self):
+        size = (24, 20, 16)
+        mask = bytearray(24 * 20 * 16)
+        for x, y, z in itertools.product(*map(range, size)):
+            if (x - 12) ** 2 / 4 + (y - 10) ** 2 + (z - 8) ** 2 < 36:
+                mask[x + 24 * (y + 20 * z)] = 1 if x < 12 else 2
+        self.use(size, bytes(mask))
+        voxel_mm = max(SPACING)
+        full, coarse = {}, {}
+        for group in (1, 2):
+            file = self.folder / f"{group}.ply"
+            full[group] = self.export(f"{group}:{file}")["triangles_by_group"][str(group)]
+            result = self.export(f"{group}:{file}", "--decimate", "0.1")
+            points, groups = read_ply(file)
+            coarse[group] = {frozenset(points[i] for i in triangle) for triangle in groups[group]}
+            self.assertEqual(result["triangles_by_group"], {str(group): len(groups[group])})
+            self.assertLess(len(groups[group]), 0.4 * full[group])
+            self.assertLess(0.0, result["decimation_error"])
+            self.assertLessEqual(result["decimation_error"], voxel_mm)
+            edges = Counter((t[i], t[(i + 1) % 3]) for t in groups[group] for i in range(3))
+            self.assertEqual(set(edges.values()), {1})
+            self.assertTrue(all((b, a) in edges for a, b in edges))
+            voxels = mask.count(group) * VOXEL_MM3
+            self.assertAlmostEqual(volume_of(points, groups[group]), voxels, delta=0.01 * voxels)
+        border = coarse[1] & coarse[2]
+        # A disc of about 100 voxels, whose outline stays.
+        self.assertGreater(len(border), 20)
+        self.assertLess(len(border), 100)
+        def at_border(triangle):
+            return all(abs(point[1] - placed((12, 0, 0))[1]) < 0.3 for point in triangle)
+        self.assertEqual(border, {triangle for triangle in coarse[1] | coarse[2] if at_border(triangle)})
+        self.assertIsNone(self.export(self.folder / "a.ply")["decimation_error"])
+        for share in ("0", "1.5", "many"):
+            self.check_refused("export", self.session, "--surface", self.folder / "a.ply", "--decimate", share, status=2,
+                               says=["--decimate"])
+
     def test_a_group_of_gltf_has_its_name_and_colour(self):
         self.export(f"9+1:{self.folder / 'a.glb'}")
         _, groups, content = read_glb(self.folder / "a.glb")

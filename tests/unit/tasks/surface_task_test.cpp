@@ -48,11 +48,12 @@ std::vector<std::string> names_in(const std::filesystem::path& folder)
 
 TEST_CASE("an export of surfaces is given as JSON, and every option is documented")
 {
-    const auto task = from_json<SurfaceTask>(R"({"surface": "a.glb", "groups": "1+4", "smooth": 0})", "/data", "x");
+    const auto task =
+        from_json<SurfaceTask>(R"({"surface": "a.glb", "groups": "1+4", "smooth": 0, "decimate": 0.25})", "/data", "x");
     CHECK(task.surface == "/data/a.glb");
     CHECK(task.groups == "1+4");
     CHECK(to_json(task, "/data") ==
-          R"({"surface":"a.glb","groups":"1+4","smooth":0,"space":"physical","budget_host_mib":0})");
+          R"({"surface":"a.glb","groups":"1+4","smooth":0,"decimate":0.25,"space":"physical","budget_host_mib":0})");
     for (const SessionKey& option : options_of<SurfaceTask>()) CHECK(!option.meaning.empty());
 }
 

@@ -41,7 +41,9 @@ struct TestMesh {
     }
 };
 
-inline TestMesh mesh_of(GroupSurfaces& surfaces, uint8_t group)
+/// `surfaces`: GroupSurfaces or DecimatedSurfaces.
+template <class Surfaces>
+TestMesh mesh_of(Surfaces& surfaces, uint8_t group)
 {
     TestMesh mesh;
     surfaces.for_each_vertex(group, [&](const glm::dvec3& position) { mesh.vertices.push_back(position); });
