@@ -10,7 +10,7 @@ install(DIRECTORY assets/transfer_functions assets/devices DESTINATION ${shared}
 install(FILES assets/examples/vessels.session.json DESTINATION ${shared}/shvr/examples)
 install(FILES tools/udev/70-shvr-haptics.rules DESTINATION lib/udev/rules.d)
 install(FILES tools/package/shvr.desktop DESTINATION ${shared}/applications)
-install(FILES tools/package/shvr.metainfo.xml DESTINATION ${shared}/metainfo)
+install(FILES tools/package/shvr.metainfo.xml DESTINATION ${shared}/metainfo RENAME io.github.shvr.SHVR.metainfo.xml)
 install(FILES tools/package/shvr.mime.xml DESTINATION ${shared}/mime/packages RENAME shvr.xml)
 install(FILES tools/package/shvr.svg DESTINATION ${shared}/icons/hicolor/scalable/apps)
 install(FILES README.md tools/package/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})

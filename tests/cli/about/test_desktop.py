@@ -34,10 +34,15 @@ def entry():
 @unittest.skipIf(MISSING, f"not installed: {', '.join(MISSING)}")
 class Desktop(CliTest):
     def test_entry_and_description_are_valid(self):
-        for command in (["desktop-file-validate", PACKAGE / "shvr.desktop"],
-                        ["appstreamcli", "validate", "--no-net", PACKAGE / "shvr.metainfo.xml"]):
-            result = subprocess.run(command, capture_output=True, text=True, check=False)
-            self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        result = subprocess.run(["desktop-file-validate", PACKAGE / "shvr.desktop"], capture_output=True, text=True,
+                                check=False)
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        result = subprocess.run(["appstreamcli", "validate", "--no-net", PACKAGE / "shvr.metainfo.xml"],
+                                capture_output=True, text=True, check=False)
+        # AppStream 1.0 warns of the missing home page; the project has none.
+        problems = [line for line in result.stdout.splitlines() if re.match("[EW]: ", line)]
+        self.assertEqual([line for line in problems if "url-homepage-missing" not in line], [])
+        self.assertTrue(problems or result.returncode == 0, result.stdout + result.stderr)
         self.assertEqual(entry()["Icon"], (PACKAGE / "shvr.svg").stem)
         self.assertTrue(entry()["Exec"].startswith("shvr view "))
 
