@@ -1,5 +1,6 @@
 // Looks up a step, or part of a step, in the transfer function's table. Needs `table` and PREINTEGRATED. The layout of
 // the table is in raycast.h.
+#include "to_int.glsl"
 
 ivec2 table_texel(uint index)
 {
@@ -31,7 +32,7 @@ TablePlace table_place(const RaycastParams params, float density)
 {
     const float last = float(params.table_entries - 1u);
     const float at = clamp((density - params.table_lower) * params.table_scale, 0.0, last);
-    const uint entry = uint(min(at, last - 1.0));
+    const uint entry = to_uint(min(at, last - 1.0));
     return TablePlace(entry, at - float(entry), density >= params.table_lower && density <= params.table_upper);
 }
 
@@ -92,9 +93,9 @@ Opaque opaque_interval(const RaycastParams params, uint number)
 Opaque opaque_ahead(const RaycastParams params, float front, float back)
 {
     const float at = clamp((front - params.table_lower) * params.opaque_scale, 0.0, float(OPAQUE_ENTRIES - 1u));
-    const vec2 numbers = imageLoad(table, table_texel(params.opaque_map + uint(at))).xy;
+    const vec2 numbers = imageLoad(table, table_texel(params.opaque_map + to_uint(at))).xy;
     const bool rises = back >= front;
-    const uint number = uint(rises ? numbers.x : numbers.y);
+    const uint number = to_uint(rises ? numbers.x : numbers.y);
     const Opaque nearest = opaque_interval(params, number);
     const bool is_passed = rises ? nearest.upper.a < front : nearest.lower.a > front;
     if (!is_passed) return nearest;

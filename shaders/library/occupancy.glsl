@@ -1,4 +1,5 @@
 // Whether the transfer function shows anything between two codes. Needs `params` and `visible_intervals`.
+#include "to_int.glsl"
 
 bool transfer_function_shows(uint range)
 {
@@ -9,7 +10,7 @@ bool transfer_function_shows(uint range)
     const float last = float(params.table_entries - 1u);
     const float from = (lower - guard - params.table_lower) * params.table_scale - 0.01;
     const float to = (upper + guard - params.table_lower) * params.table_scale + 0.01;
-    const uint first_interval = uint(clamp(from, 0.0, last - 1.0));
-    const uint last_interval = uint(clamp(to, 0.0, last - 1.0));
+    const uint first_interval = to_uint(clamp(from, 0.0, last - 1.0));
+    const uint last_interval = to_uint(clamp(to, 0.0, last - 1.0));
     return visible_intervals.before[last_interval + 1u] > visible_intervals.before[first_interval];
 }

@@ -1,4 +1,5 @@
 // Finds bricks in the directory of pages.h. Needs KEPT; declares its own bindings.
+#include "to_int.glsl"
 
 layout(binding = 1, scalar) readonly buffer Directory { uint entries[]; } directory;
 layout(binding = 8, r8ui) uniform readonly uimage3D cell_leap;
@@ -19,7 +20,7 @@ struct Place {
 // Finds the brick at a position, but not the cell, so samples anywhere in the brick may be visible and painted.
 Place brick_at(const RaycastParams params, vec3 position)
 {
-    const uvec3 voxel = uvec3(position);
+    const uvec3 voxel = to_uint(position);
     Place place;
     place.cell_shift = params.page_shift;
     place.entry = grid_index(voxel >> place.cell_shift, params.page_counts);
@@ -47,7 +48,7 @@ Place place_at(const RaycastParams params, vec3 position)
 {
     Place place = brick_at(params, position);
     if (place.distance == 0u) {
-        const uvec3 cell = uvec3(position) >> place.level + 2u & BRICK_CELLS - 1u;
+        const uvec3 cell = to_uint(position) >> place.level + 2u & BRICK_CELLS - 1u;
         place.box_shift = place.cell_shift;
         place.cell_shift = place.level + 2u;
         const uint found = imageLoad(cell_leap, ivec3(BRICK_CELLS * unpack_slot(place.slot) + cell)).x;

@@ -9,7 +9,7 @@
 #ifdef MASKED
 uint group_at(const RaycastParams params, vec3 position)
 {
-    return SMOOTH_BORDERS != 0u ? group_around(position, ivec3(params.position_limit)) : group_of(uvec3(position));
+    return SMOOTH_BORDERS != 0u ? group_around(position, ivec3(params.position_limit)) : group_of(to_uint(position));
 }
 
 // A painted voxel has its group's look, regardless of its density.
@@ -25,7 +25,7 @@ float value_near(vec3 in_brick, ivec3 first)
 {
     const vec3 held = clamp(in_brick, -1.0, float(BRICK_SIZE));   // including its aprons
     const vec3 corner = min(floor(held), float(BRICK_SIZE) - 1.0);
-    return value_of(density_at(ivec3(corner) + first, held - corner));
+    return value_of(density_at(int_of_whole(corner) + first, held - corner));
 }
 
 // The density at an end of a step, at length `s` along the ray. `texels` are those of the step's middle; the apron of
@@ -68,9 +68,9 @@ Sample sample_at(const RaycastParams params, const Ray ray, vec3 position, float
         float ambient = params.ambient;
 #ifdef OCCLUDED
 #ifdef PAGED
-        const uvec3 last = uvec3(params.position_limit) >> place.level;
+        const uvec3 last = to_uint(params.position_limit) >> place.level;
 #else
-        const uvec3 last = uvec3(params.position_limit);
+        const uvec3 last = to_uint(params.position_limit);
 #endif
         const ivec3 to_values =
             ivec3(slot_origin(texels.slot)) - ivec3(texels.brick * BRICK_SIZE) + int(BRICK_APRON);

@@ -5,6 +5,7 @@
 // Lanes that leave a loop early wait for the other lanes, and lavapipe loses values that such a lane has set in the
 // loop. Therefore only the step and counts, which are incremented, survive these loops; the sample found is read
 // again.
+#include "to_int.glsl"
 
 // Maximum iterations; lanes that have found nothing by then take a sample like the other lanes.
 const uint MAX_SEARCH_TURNS = 20u;
@@ -33,7 +34,7 @@ const uint ASKED_IN_TURN = 2u;
 uint bits_ahead(const RaycastParams params, const Ray ray, float begin, uint i)
 {
     const vec3 parts = vec3(SAMPLE_BIT_PARTS, SAMPLE_BIT_PARTS << 2, SAMPLE_BIT_PARTS << 4);
-    const uvec3 last = (uvec3(params.position_limit) + 1u) * uvec3(parts) - 1u;
+    const uvec3 last = (to_uint(params.position_limit) + 1u) * uvec3(parts) - 1u;
     const uvec3 ahead = uvec3(ivec3(round(ray.direction * (params.step * parts))));
     uvec3 place = uvec3(ivec3((sample_position(params, ray, begin, i) + 0.5) * parts));
     uint found = 0u;

@@ -7,6 +7,7 @@
 // A flag that is carried from cell to cell tells whether the ray is inside. If rounding loses a crossing at a border,
 // the next cell finds the crossing at its start, so there are neither holes nor duplicates. Variables needed after the
 // loop are carried through it, since lanes that leave the loop early lose all other variables.
+#include "to_int.glsl"
 #include "voxel_code.glsl"
 
 // A tolerance in reference lengths. A piece of the ray shorter than the tolerance belongs to the neighbouring cell; a
@@ -56,7 +57,7 @@ Cell cell_at(const RaycastParams params, const Ray ray, vec3 position)
 #endif
     cell.scale = float(1u << level);
     cell.corner = floor(position / cell.scale - 0.5);
-    const uvec3 brick = uvec3(position) >> level + 5u;
+    const uvec3 brick = to_uint(position) >> level + 5u;
 #ifdef PAGED
     cell.to_atlas = place_in_slot(place.slot) - ivec3(brick * BRICK_SIZE);
 #else
@@ -149,12 +150,12 @@ void pass_clear_cells(const RaycastParams params, const Ray ray, inout Shell she
         const Place place = place_at(params, position);
         if (FEEDBACK != 0u && (KEPT != KEPT_ALL || place.is_missing)) note_reached(place);
         const uint shift = place.level + 2u;
-        const uvec3 cell = uvec3(position) >> shift, in_slot = cell & BRICK_CELLS - 1u;
+        const uvec3 cell = to_uint(position) >> shift, in_slot = cell & BRICK_CELLS - 1u;
         const bool has_range = !place.is_missing && place.slot != NO_SLOT;
         const uint range = imageLoad(cell_ranges, ivec3(BRICK_CELLS * unpack_slot(place.slot) + in_slot)).x;
 #else
         const uint shift = 2u;
-        const uvec3 cell = uvec3(position) / CELL_SIZE;
+        const uvec3 cell = to_uint(position) / CELL_SIZE;
         const bool has_range = true;
         const uint range = imageLoad(cell_ranges, ivec3(cell)).x;
 #endif

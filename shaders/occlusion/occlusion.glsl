@@ -1,6 +1,7 @@
 // The light that reaches a sample, interpolated between voxel values (occlusion.h). Needs `occlusion` (r8ui) and
 // `occlusion_look`. Interpolates by arithmetic: 8-bit filters are coarse on many devices, and not every device can
 // filter this format.
+#include "../library/to_int.glsl"
 
 float occlusion_value(ivec3 texel)
 {
@@ -13,7 +14,7 @@ float ambient_share(vec3 lattice, ivec3 to_values, vec3 last)
 {
     const vec3 held = clamp(lattice, vec3(0.0), last);   // no values exist beyond the volume's edge
     const vec3 corner = floor(held), f = held - corner;
-    const ivec3 c = ivec3(corner) + to_values;
+    const ivec3 c = int_of_whole(corner) + to_values;
     vec4 v = mix(vec4(occlusion_value(c), occlusion_value(c + ivec3(0, 1, 0)), occlusion_value(c + ivec3(0, 0, 1)),
                       occlusion_value(c + ivec3(0, 1, 1))),
                  vec4(occlusion_value(c + ivec3(1, 0, 0)), occlusion_value(c + ivec3(1, 1, 0)),

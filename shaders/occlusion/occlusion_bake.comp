@@ -130,7 +130,7 @@ float opacity_along(const Course course, float along)
 // The fixed opacity of the voxel at `place`, regardless of density; below 0: none.
 float held_at(const Block block, vec3 place)
 {
-    const ivec3 voxel = ivec3(place + float(NEAR_AHEAD));
+    const ivec3 voxel = to_int(place + float(NEAR_AHEAD));
     const vec3 centre = vec3(voxel) - (float(NEAR_AHEAD) - 0.5);
     const bool is_inside = all(greaterThanEqual(centre, block.lower)) && all(lessThan(centre, block.upper));
     const uint packed = imageLoad(near, voxel + block.to_near).x;
@@ -255,14 +255,14 @@ float ramp_left(uint packed, vec3 from_middle, float softened, float steepest)
 
 float near_left(const Block block, vec3 place, float softened)
 {
-    const ivec3 voxel = ivec3(place);
+    const ivec3 voxel = to_int(place);
     return ramp_left(imageLoad(near, voxel + block.to_near).x, place - (vec3(voxel) + 0.5), softened,
                      STEEPEST_OF_VOXELS);
 }
 
 float left_of_2(const Block block, vec3 place, float softened)
 {
-    const ivec3 cell = ivec3(place);
+    const ivec3 cell = to_int(place);
     return ramp_left(imageLoad(around_2, cell + block.to_2).x, place - (vec3(cell) + 0.5), softened,
                      STEEPEST_OF_CELLS);
 }
@@ -286,10 +286,10 @@ float along(const Surface s, const Block block, vec3 direction, float leaves, iv
     float left_0 = near_left(block, near_0, SOFT_NEAR[0]), left_1 = near_left(block, near_1, SOFT_NEAR[1]);
     // The stretch of the last sample in voxels is twice as long as the stretches of the others.
     float half_2 = near_left(block, near_2, SOFT_NEAR[2]);
-    half_2 = ivec3(near_2) == own ? 1.0 : half_2;
+    half_2 = to_int(near_2) == own ? 1.0 : half_2;
     const float left_2 = half_2 * half_2;
-    left_1 = ivec3(near_1) == own ? max(left_1, left_2) : left_1;
-    left_0 = ivec3(near_0) == own ? max(left_0, left_1) : left_0;
+    left_1 = to_int(near_1) == own ? max(left_1, left_2) : left_1;
+    left_0 = to_int(near_0) == own ? max(left_0, left_1) : left_0;
     vec2 light = after(vec2(1.0, params.first), params.near_taps[0].stretch, left_0, sqrt(left_0));
     light = after(light, params.near_taps[1].stretch, left_1, sqrt(left_1));
     light = after(light, params.near_taps[2].stretch, left_2, half_2);
@@ -308,8 +308,8 @@ float along(const Surface s, const Block block, vec3 direction, float leaves, iv
         light = after(light, params.taps_4[0].stretch, far_3, sqrt(far_3));
         return after(light, params.taps_4[1].stretch, far_4, sqrt(far_4)).y;
     }
-    const ivec3 cell_0 = ivec3(from_4 + 0.25 * params.taps_4[0].distance * step);
-    const ivec3 cell_1 = ivec3(from_4 + 0.25 * params.taps_4[1].distance * step);
+    const ivec3 cell_0 = to_int(from_4 + 0.25 * params.taps_4[0].distance * step);
+    const ivec3 cell_1 = to_int(from_4 + 0.25 * params.taps_4[1].distance * step);
     const uint packed_0 = imageLoad(around_4, cell_0 + block.to_4).x;
     const uint packed_1 = imageLoad(around_4, cell_1 + block.to_4).x;
     light = after_cell(light, params.taps_4[0].stretch, cell_tap(s, cell_0, packed_0, weights, leaves));
@@ -384,6 +384,6 @@ void main()
                          in_block);
         }
         const float value = sum * share / params.radius;
-        if (rays > 0u) store(job, voxel, is_apron, uint(255.0 * min(value, 1.0) + 0.5));
+        if (rays > 0u) store(job, voxel, is_apron, to_uint(255.0 * min(value, 1.0) + 0.5));
     }
 }

@@ -69,7 +69,7 @@ uint ramp_of_cell(const OcclusionCellsParams params, vec4 codes[2], vec4 opaciti
 
 uvec4 code_of(vec3 opacity)
 {
-    const uvec3 code = uvec3(255.0 * sqrt(clamp(opacity, 0.0, 1.0)) + 0.5);
+    const uvec3 code = to_uint(255.0 * sqrt(clamp(opacity, 0.0, 1.0)) + 0.5);
     return uvec4(code.x | code.y << 8u | code.z << 16u);
 }
 

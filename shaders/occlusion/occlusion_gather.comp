@@ -98,7 +98,7 @@ uint part_of_ramp(uint packed, ivec3 cell, int above, float exponent)
     const vec3 offset = share * (vec3(cell & (1 << above) - 1) + 0.5) - 0.5, slope = vec3(ramp_slope(packed));
     const float height = float(ramp_height(packed)) + RAMP_HEIGHTS / RAMP_SLOPES * dot(slope, offset);
     const float top = float(packed & 255u), left = pow(max(1.0 - top * top / 65025.0, 0.0), exponent);
-    const uint code = uint(255.0 * sqrt(1.0 - left) + 0.5);
+    const uint code = to_uint(255.0 * sqrt(1.0 - left) + 0.5);
     const uint bits = ramp_bits(code, int(round(clamp(height, -30.0, 30.0))), ivec3(round(share * slope)));
     return code == 0u ? 0u : bits;
 }
@@ -108,7 +108,7 @@ uint stretched(uint packed, float exponent)
 {
     const uvec3 code = uvec3(packed, packed >> 8u, packed >> 16u) & 255u;
     const vec3 left = pow(max(1.0 - vec3(code * code) / 65025.0, 0.0), vec3(exponent));
-    const uvec3 of_tap = uvec3(255.0 * sqrt(1.0 - left) + 0.5);
+    const uvec3 of_tap = to_uint(255.0 * sqrt(1.0 - left) + 0.5);
     return packed == 0u ? 0u : of_tap.x | of_tap.y << 8u | of_tap.z << 16u;
 }
 
@@ -123,7 +123,7 @@ void copy_cells(const OcclusionGatherParams params, const OcclusionJob job, uint
     for (uint i = 64u * gl_WorkGroupID.z + gl_LocalInvocationIndex; i < min(side * side * side, end);
          i += 64u * OCCLUSION_SPLIT) {
         // Float arithmetic is exact for numbers this small, and faster than integer division.
-        const uint row = uint((float(i) + 0.5) * inverse_side), z = uint((float(row) + 0.5) * inverse_side);
+        const uint row = to_uint((float(i) + 0.5) * inverse_side), z = to_uint((float(row) + 0.5) * inverse_side);
         const ivec3 texel = ivec3(i - side * row, row - side * z, z), voxel = texel - apron << shift;
         const uint entry = entry_at(params.reach, voxel >> 5);
         const int above = int(entry >> OCCLUSION_LEVEL_SHIFT);

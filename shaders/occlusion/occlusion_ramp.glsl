@@ -1,4 +1,5 @@
 // Makes ramps (occlusion.h). Needs occlusion_opacity.glsl.
+#include "../library/to_int.glsl"
 
 // Constants found by optimization, as in occlusion_bake.comp. A ramp has its full slope if the variance of the opacity,
 // for a top of 1, is above 1 / RAMP_UNEVEN.
@@ -15,7 +16,7 @@ uint packed_ramp(float top, float level, float squares, vec3 direction, float st
     const float share = min(RAMP_UNEVEN * max(squares - level * level, 0.0), 1.0);
     const int height = int(round(clamp(RAMP_HEIGHTS * (level - 0.5) * steepness, -30.0, 30.0)));
     const ivec3 slope = ivec3(round(clamp(RAMP_SLOPES * share * steepness * direction, -31.0, 31.0)));
-    const uint code = uint(255.0 * sqrt(clamp(top, 0.0, 1.0)) + 0.5);
+    const uint code = to_uint(255.0 * sqrt(clamp(top, 0.0, 1.0)) + 0.5);
     return code == 0u ? 0u : ramp_bits(code, height, slope);
 }
 
@@ -40,5 +41,5 @@ uint ramp_of(const OcclusionCellsParams params, float middle, vec3 slope, float 
 // The ramp of a voxel with a fixed opacity.
 uint held_ramp(float opacity)
 {
-    return ramp_bits(uint(255.0 * sqrt(clamp(opacity, 0.0, 1.0)) + 0.5), RAMP_HELD, ivec3(0));
+    return ramp_bits(to_uint(255.0 * sqrt(clamp(opacity, 0.0, 1.0)) + 0.5), RAMP_HELD, ivec3(0));
 }

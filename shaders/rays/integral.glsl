@@ -227,9 +227,9 @@ Stretch stretch_of(const RaycastParams params, const Ray ray, float begin, float
 #endif
 #ifdef OCCLUDED
 #ifdef PAGED
-    stretch.last = vec3(uvec3(params.position_limit) >> place.level);
+    stretch.last = vec3(to_uint(params.position_limit) >> place.level);
 #else
-    stretch.last = vec3(uvec3(params.position_limit));
+    stretch.last = vec3(to_uint(params.position_limit));
 #endif
     stretch.corner = vec3(texels.corner);
     stretch.to_values = ivec3(slot_origin(texels.slot)) - ivec3(texels.brick * BRICK_SIZE) + int(BRICK_APRON);

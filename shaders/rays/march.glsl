@@ -69,14 +69,14 @@ uint steps_to_leave(const RaycastParams params, const Ray ray, vec3 position, co
 {
     const float reach = float(place.distance);
 #ifdef PAGED
-    const vec3 cell = vec3(uvec3(position) >> place.cell_shift);
-    const vec3 box = vec3(uvec3(position) >> place.box_shift);
+    const vec3 cell = vec3(to_uint(position) >> place.cell_shift);
+    const vec3 box = vec3(to_uint(position) >> place.box_shift);
     const float cell_size = float(1u << place.cell_shift), box_size = float(1u << place.box_shift);
     // A brick's leap distances are valid only inside that brick.
     const vec3 bound = clamp(cell_size * (cell + mix(vec3(1.0 - reach), vec3(reach), ray.ahead)), box_size * box,
                              box_size * (box + 1.0));
 #else
-    const vec3 cell = vec3(uvec3(position) / CELL_SIZE);
+    const vec3 cell = vec3(to_uint(position) / CELL_SIZE);
     const vec3 bound = float(CELL_SIZE) * (cell + mix(vec3(1.0 - reach), vec3(reach), ray.ahead));
 #endif
     const vec3 lengths = (bound - position) * ray.inverse;

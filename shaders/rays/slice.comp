@@ -56,7 +56,7 @@ vec4 sliced(const RaycastParams params, vec3 position, out bool waits)
     const Texels texels = texels_at(position, place);
     vec4 look = slice_look(params, value_of(density_at(texels.corner + texels.to_atlas, texels.fraction)));
 #ifdef MASKED
-    if (place.is_painted) look = painted(params, group_of(uvec3(position)), look);
+    if (place.is_painted) look = painted(params, group_of(to_uint(position)), look);
 #endif
     if (DISTANCE_BLEND != 0u) look.rgb = blended(params, look.rgb, position);
     return look;

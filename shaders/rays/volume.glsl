@@ -4,6 +4,7 @@
 //   MASKED     there is a segmentation mask; an unpainted volume binds and fetches none of it
 //   PAGED      paged bricks of several levels (pages.h), instead of a leap grid over resident bricks
 #include "../raycast.h"
+#include "../library/to_int.glsl"
 #ifdef PAGED
 #include "../pages.h"
 #endif
@@ -53,7 +54,7 @@ struct Place {
 
 Place place_at(const RaycastParams params, vec3 position)
 {
-    const uint entry = imageLoad(leap, ivec3(uvec3(position) / CELL_SIZE)).x;
+    const uint entry = imageLoad(leap, ivec3(to_uint(position) / CELL_SIZE)).x;
     return Place(entry >> LEAP_DISTANCE_SHIFT, entry & LEAP_SLOT_MASK, (entry & LEAP_PAINTED) != 0u, false);
 }
 

@@ -21,13 +21,14 @@ layout(binding = 4, scalar) writeonly buffer Parents { uint of[]; } parents;
 
 #define STACKED 5
 #include "../library/voxel_code.glsl"
+#include "../library/to_int.glsl"
 #include "region.glsl"
 
 uint code_of(uvec3 voxel)
 {
-    if (IN_SLOTS == 0u) return uint(code_at(place_of_first() + ivec3(voxel)));
+    if (IN_SLOTS == 0u) return to_uint(code_at(place_of_first() + ivec3(voxel)));
     const uint slot = region_bricks.slots[grid_index(voxel / BRICK_SIZE - params.brick_begin, params.brick_counts)];
-    return uint(code_at(place_in_slot(slot) + ivec3(voxel % BRICK_SIZE)));
+    return to_uint(code_at(place_in_slot(slot) + ivec3(voxel % BRICK_SIZE)));
 }
 
 void main()
