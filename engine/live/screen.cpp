@@ -23,6 +23,12 @@ void Screen::look_from(const Camera& camera, const glm::dvec3& probe_voxel)
     arrange(false);
 }
 
+void Screen::go_through(const std::optional<glm::dvec3>& cross)
+{
+    view_.slices.cross = cross;
+    if (!parts_.empty()) arrange(false);
+}
+
 void Screen::arrange(bool look_changed)
 {
     const std::vector<Pane> panes = panes_of(view_, camera_, pixels_, renderer_.scene().info(), probe_voxel_);
@@ -172,10 +178,18 @@ std::vector<Stroke> Screen::strokes(const Part& part, const ProbeLook& probe, co
                                  .color = probe.color,
                                  .is_outlined = probe.has_silhouette,
                                  .has_arrow = probe.has_arrow},
+                       .cross = cross(),
                        .balls = marks.balls,
                        .lines = marks.lines,
                        .box = cut_box(shows_cut_box)},
                       renderer_.scene().info());
+}
+
+/// Returns where the slices meet, in volume space; null: at the probe.
+std::optional<glm::dvec3> Screen::cross() const
+{
+    if (!view_.slices.cross) return std::nullopt;
+    return *view_.slices.cross * renderer_.scene().info().spacing;
 }
 
 std::optional<OverlayScene::Box> Screen::cut_box(bool is_wanted) const
@@ -199,6 +213,7 @@ Image8 Screen::read_back()
         const OverlayScene scene{.main = camera_,
                                  .main_pixels = parts_[0].pane.box.end - parts_[0].pane.box.begin,
                                  .probe = {.center = probe, .is_outlined = false, .has_arrow = false},
+                                 .cross = cross(),
                                  .box = cut_box(false)};
         draw_strokes(whole, strokes_of(part.pane, scene, renderer_.scene().info()), box);
     }

@@ -21,7 +21,9 @@ public:
     void look(const Session& session, const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& probe_voxel);
     /// Moves the camera or the probe in the same session; redraws only the panes that change.
     void look_from(const Camera& camera, const glm::dvec3& probe_voxel);
-    /// Sets the probe; slices follow it.
+    /// Sets the point that slices go through (SliceSettings::cross); redraws only the slices that change.
+    void go_through(const std::optional<glm::dvec3>& cross);
+    /// Sets the probe; slices without a point of their own follow it.
     void show_probe(const ProbeLook& probe);
     void update_occlusion();
 
@@ -69,6 +71,7 @@ private:
     void give_turn(size_t part);
     bool is_loading() const;
     std::optional<OverlayScene::Box> cut_box(bool is_wanted) const;
+    std::optional<glm::dvec3> cross() const;
 
     Renderer& renderer_;
     View::Options options_;

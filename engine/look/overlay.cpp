@@ -120,11 +120,11 @@ void add_frustum(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, c
             edge(plane + size_t(a), plane + size_t(b));
 }
 
-/// Draws where the other two slices cut this one: two lines in the colours of their axes, with a gap at the probe.
+/// Draws where the other two slices cut this one: two lines in the colours of their axes, with a gap where they meet.
 void add_cross(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, const OverlayScene& scene)
 {
     constexpr double OPEN = 12.0;  ///< pixels
-    const auto at = project(pane.shot.camera, pixels, scene.probe.center);
+    const auto at = project(pane.shot.camera, pixels, scene.cross.value_or(scene.probe.center));
     if (!at) return;
     const CameraAxes axes = axes_of(pane.shot.camera);
     const auto axis_of = [](const glm::dvec3& direction) {

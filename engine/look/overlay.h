@@ -31,6 +31,7 @@ struct OverlayScene {
         bool has_arrow = true;    ///< draws an arrow towards the probe if it is out of sight
     };
     Probe probe;
+    std::optional<glm::dvec3> cross{};  ///< where the slices meet, in volume space; null: at the probe
     /// Highlighted parts of the trace: nodes as rings, internodes as lines along their axes.
     struct Ball {
         glm::dvec3 center{0.0};  ///< volume space

@@ -46,7 +46,7 @@ glm::dvec3 middle_of(const SliceSettings& slices, const VolumeInfo& volume, cons
 {
     const glm::dvec3 size(volume.size);
     if (!slices.center && slices.zoom <= 1.0) return 0.5 * size;
-    return glm::clamp(slices.center.value_or(probe_voxel), glm::dvec3(0.0), size);
+    return glm::clamp(slices.center.value_or(cross_of(slices, probe_voxel)), glm::dvec3(0.0), size);
 }
 
 /// Returns the axis of the volume that is closest to `direction`.
@@ -56,7 +56,7 @@ int axis_along(const glm::dvec3& direction)
     return size.x > size.y ? (size.x > size.z ? 0 : 2) : size.y > size.z ? 1 : 2;
 }
 
-/// Returns the slice through the probe that is perpendicular to `axis`: z seen from the top, y from the front, x from
+/// Returns the slice through the cross that is perpendicular to `axis`: z seen from the top, y from the front, x from
 /// the right, like the volume in these views.
 Pane slice_pane(int axis, const PixelBox& box, const VolumeInfo& volume, const glm::dvec3& probe_voxel,
                 const SliceSettings& slices)
@@ -69,7 +69,7 @@ Pane slice_pane(int axis, const PixelBox& box, const VolumeInfo& volume, const g
     // The slice must stay slightly inside the volume's end, even after a kernel's rounding to floats: exactly at the
     // end, the volume would be drawn without an edge.
     constexpr double LAST = 1.0 - 1e-6;
-    const double voxel = std::clamp(probe_voxel[axis], 0.0, LAST * size[axis]);
+    const double voxel = std::clamp(cross_of(slices, probe_voxel)[axis], 0.0, LAST * size[axis]);
     if (slices.center || slices.zoom > 1.0) {
         const glm::dvec3 way = middle_of(slices, volume, probe_voxel) * volume.spacing - camera.target;
         camera.target += way;
@@ -185,9 +185,10 @@ SliceSettings slices_moved(const SliceSettings& slices, const Pane& slice, const
 SliceSettings slices_following(const SliceSettings& slices, const std::vector<Pane>& panes, std::optional<size_t> held,
                                const VolumeInfo& volume, const glm::dvec3& probe_voxel)
 {
-    const glm::dvec3 seen = glm::clamp(probe_voxel, glm::dvec3(0.0), glm::dvec3(volume.size)) * volume.spacing;
+    const glm::dvec3 cross = cross_of(slices, probe_voxel);
+    const glm::dvec3 seen = glm::clamp(cross, glm::dvec3(0.0), glm::dvec3(volume.size)) * volume.spacing;
     glm::bvec3 follows(false);
-    int held_axis = -1;  // the slice under the mouse if the probe is visible there: it must not move
+    int held_axis = -1;  // the slice under the mouse if the cross is visible there: it must not move
     for (size_t i = 0; i < panes.size(); ++i) {
         const Pane& pane = panes[i];
         if (!pane.shot.is_slice) continue;

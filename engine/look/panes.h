@@ -49,8 +49,15 @@ struct SliceSettings {
     double zoom = 1.0;                   ///< zoom of all slices; 1: the whole volume fits
     std::optional<glm::dvec3> center;    ///< voxel at the centre of all slices; default: the volume's centre, or the
                                          ///< probe if zoomed in
+    std::optional<glm::dvec3> cross;     ///< voxel that the slices go through; default: the probe
     bool operator==(const SliceSettings&) const = default;
 };
+
+/// Returns the voxel that the slices go through.
+inline glm::dvec3 cross_of(const SliceSettings& slices, const glm::dvec3& probe_voxel)
+{
+    return slices.cross.value_or(probe_voxel);
+}
 
 struct ViewSettings {
     Arrangement arrangement = Arrangement::single;
@@ -84,7 +91,7 @@ struct Pane {
 };
 
 /// Returns the panes of a picture; the first is the view of `main`. If the division leaves a remainder, a row or column
-/// of pixels stays uncovered. `probe_voxel` is a point on all slices. A picture too small to divide has one pane.
+/// of pixels stays uncovered. Slices go through cross_of(). A picture too small to divide has one pane.
 std::vector<Pane> panes_of(const ViewSettings& settings, const Camera& main, const glm::uvec2& pixels,
                            const VolumeInfo& volume, const glm::dvec3& probe_voxel);
 
@@ -95,8 +102,8 @@ SliceSettings slices_zoomed(const SliceSettings& slices, const Pane& slice, cons
 /// Moves the centre of all slices, so that `slice` follows a mouse motion of `way` pixels.
 SliceSettings slices_moved(const SliceSettings& slices, const Pane& slice, const glm::dvec2& way,
                            const VolumeInfo& volume, const glm::dvec3& probe_voxel);
-/// Moves the slices along an axis if the probe has left the visible part of a slice along this axis. `held` is the
-/// index of the pane under the mouse, whose slice does not move while the probe is visible in it.
+/// Moves the slices along an axis if the cross has left the visible part of a slice along this axis. `held` is the
+/// index of the pane under the mouse, whose slice does not move while the cross is visible in it.
 SliceSettings slices_following(const SliceSettings& slices, const std::vector<Pane>& panes, std::optional<size_t> held,
                                const VolumeInfo& volume, const glm::dvec3& probe_voxel);
 

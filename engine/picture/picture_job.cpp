@@ -118,6 +118,7 @@ PictureJob::PictureJob(Renderer& renderer, const Session& session, const Camera&
     overlay_ = {.main = camera,
                 .main_pixels = panes_[0].box.end - panes_[0].box.begin,
                 .probe = {.center = probe_voxel * info.spacing, .is_outlined = false, .has_arrow = false}};
+    if (session.view.slices.cross) overlay_.cross = *session.view.slices.cross * info.spacing;
     if (const auto& probe = options_.probe) {
         overlay_.probe = {.center = probe->center,
                           .radius = probe->radius,

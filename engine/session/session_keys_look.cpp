@@ -215,6 +215,8 @@ void fields(Fields& f, SliceSettings& slices)
              {.meaning = "point at the centre of the slices",
               .unit = "voxels",
               .standard = "the volume's centre; for enlarged slices the probe"});
+    f.vector("cross", slices.cross, {-double(MAX_SIDE), 2.0 * double(MAX_SIDE)},
+             {.meaning = "point that the slices go through", .unit = "voxels", .standard = "the probe"});
     const char* const standard = "the end of the volume's range";
     f.number(
         "black", slices.black, INTENSITY,

@@ -30,7 +30,10 @@ void Workbench::perform(const Action& action)
     if (!document && !ui::why_not(model(), action).empty())
         fail(services_.opener.is_opening() ? sentence(services_.opener.opening_name(), " is being opened")
                                            : std::string("Nothing is open"));
-    if (desk_.log && document && document->touch.servo()) desk_.log(line_of(PlaceProbe{document->probe_voxel()}));
+    if (desk_.log && document && document->touch.servo()) {
+        const bool slices_stay = document->session.view.slices.cross.has_value();
+        desk_.log(line_of(PlaceProbe{.voxel = document->probe_voxel(), .hovers = slices_stay}));
+    }
     if (document && document->annotator.stroke_is_running() && waits_for_strokes(model(), action))
         services_.painter.await_strokes();
     recent_.begin(action);

@@ -70,6 +70,7 @@ constexpr SettingLabel LABELS[] = {
     {"view.slices.paint_share", "strength of paint in slices"},
     {"view.slices.zoom", "zoom of the slices"},
     {"view.slices.center", "centre of the slices", VOXELS},
+    {"view.slices.cross", "point that the slices go through", VOXELS},
     {"view.slices.black", "black level of the slices"},
     {"view.slices.white", "white level of the slices"},
     {"view.overview_zoom", "scale of the maps"},

@@ -13,7 +13,8 @@ inline constexpr double MIN_RADIUS_VOXELS = 0.5, MAX_RADIUS_VOXELS = 60.0;
 struct ProbeTo {  ///< moves the probe to the mouse, within the plane through the probe that is parallel to the screen
     size_t pane = 0;
     glm::dvec2 pixel{0.0};
-    bool jumps = false;  ///< true: a stroke in progress does not paint between the old and the new position
+    bool jumps = false;   ///< true: a stroke in progress does not paint between the old and the new position
+    bool hovers = false;  ///< true: slices stay where they are; false: they go through the new position
 };
 
 /// Moves the probe onto the visible structure: to the steepest rise of opacity along the ray (Renderer::pick).
@@ -29,16 +30,20 @@ struct ProbeAlong {
     size_t pane = 0;
     glm::dvec2 pixel{0.0};
     bool jumps = false;
+    bool hovers = false;  ///< as for ProbeTo
 };
 
-struct PushProbe {  ///< moves the probe by voxels, in the directions of a pane's view: away from the viewer, right, up
+/// Moves the probe, and the slices with it, by voxels in the directions of a pane's view: away from the viewer, right,
+/// up.
+struct PushProbe {
     size_t pane = 0;
     double voxels = 0.0, right = 0.0, up = 0.0;
 };
 
 struct PlaceProbe {  ///< extends an open stroke
     glm::dvec3 voxel{0.0};
-    bool jumps = false;  ///< the stroke paints nothing in between
+    bool jumps = false;   ///< the stroke paints nothing in between
+    bool hovers = false;  ///< as for ProbeTo
 };
 
 struct ScaleProbe {
@@ -54,6 +59,7 @@ inline constexpr auto PROBE_ACTIONS =
                        pane_field(f, a.pane);
                        pixel_field(f, "pixel", a.pixel);
                        f.flag("jumps", a.jumps, {});
+                       f.flag("hovers", a.hovers, {});
                    }),
                row<ProbeOnto, Prober>({"probe_onto", "Put the probe onto the surface", PROBE_GROUP,
                                        "moves the probe onto the surface seen at a pixel of a pane"},
@@ -67,6 +73,7 @@ inline constexpr auto PROBE_ACTIONS =
                                            pane_field(f, a.pane);
                                            pixel_field(f, "pixel", a.pixel);
                                            f.flag("jumps", a.jumps, {});
+                                           f.flag("hovers", a.hovers, {});
                                        }),
                row<PushProbe, Prober>({"push_probe", "Push the probe", PROBE_GROUP,
                                        "moves the probe away from the viewer of a pane, to the right and up"},
@@ -80,6 +87,7 @@ inline constexpr auto PROBE_ACTIONS =
                                        [](auto& f, PlaceProbe& a) {
                                            f.vector("voxel", a.voxel, VOXELS, {.is_required = true});
                                            f.flag("jumps", a.jumps, {});
+                                           f.flag("hovers", a.hovers, {});
                                        }),
                row<ScaleProbe, Prober>(
                    {"scale_probe", "Resize the probe", PROBE_GROUP, "scales the probe and its brush by a factor"},

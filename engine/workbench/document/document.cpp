@@ -248,7 +248,7 @@ VoxelBox Document::voxels_around_probe() const
 Document::Place Document::place() const
 {
     const SliceSettings& slices = session.view.slices;
-    return {camera, probe_voxel(), slices.zoom, slices.center};
+    return {camera, probe_voxel(), slices.zoom, slices.center, slices.cross};
 }
 
 Session Document::saved_session() const
@@ -273,6 +273,7 @@ Session Document::edits() const
     edits.probe.voxel.reset();
     edits.view.slices.zoom = 1.0;
     edits.view.slices.center.reset();
+    edits.view.slices.cross.reset();
     return edits;
 }
 

@@ -126,7 +126,7 @@ struct Document {
         Camera camera;
         glm::dvec3 probe_voxel{0.0};
         double slices_zoom = 1.0;
-        std::optional<glm::dvec3> slices_center;
+        std::optional<glm::dvec3> slices_center, slices_cross;
         bool operator==(const Place&) const = default;
     };
     Place place() const;

@@ -67,6 +67,11 @@ void Hand::follow_touch()
     Touch& touch = document_->touch;
     touch.use(device_, hand_.is_puck && keeper_.preferences().puck == PuckMoves::view);
     touch.advance(touch_settings());
+    std::optional<glm::dvec3>& cross = document_->session.view.slices.cross;
+    if (!touch.is_mouse() && cross) {  // slices follow a stylus
+        cross.reset();
+        document_->screen.go_through({});
+    }
     follow_buttons(touch.buttons());
     follow_grab();
     follow_puck();

@@ -96,7 +96,10 @@ void Painter::extend_stroke()
     if (!document_->annotator.stroke_is_open() || document_->tool_voxel() == stroke_end_voxel_) return;
     stroke_end_voxel_ = document_->tool_voxel();
     document_->annotator.extend_stroke(stroke_end_voxel_);
-    if (log_ && document_->touch.servo()) log_(line_of(PlaceProbe{stroke_end_voxel_}));
+    if (log_ && document_->touch.servo()) {
+        const bool slices_stay = document_->session.view.slices.cross.has_value();
+        log_(line_of(PlaceProbe{.voxel = stroke_end_voxel_, .hovers = slices_stay}));
+    }
 }
 
 void Painter::follow_stroke()

@@ -25,11 +25,14 @@ public:
     void act(const ScaleProbe& action);
 
     /// Moves the probe. A stroke in progress extends to the new position.
-    void move_probe(const glm::dvec3& point, bool jumps);
+    /// `hovers`: slices stay where they are; otherwise they follow.
+    void move_probe(const glm::dvec3& point, bool jumps, bool hovers = false);
     ProbeModel model() const;
 
 private:
     void lift();
+    void hold_slices(bool hovers);
+    void lead_probe(const glm::dvec3& point, bool jumps);
 
     const Others others_;
 };

@@ -97,13 +97,13 @@ void Viewer::show_slices(SliceSettings slices)
     others_.note_to_keep();
 }
 
-/// If the probe has left the plane of the slices, moves the slices to the probe, whatever moved the probe.
+/// If the point that the slices go through has left their view, moves the view there, whatever moved the point.
 void Viewer::follow_slices()
 {
     constexpr double STIR_VOXELS = 0.05;  // so that a stylus's jitter does not pull back slices that the user moved
     if (!options_.slices_follow) return;
     Document& document = *document_;
-    const glm::dvec3 voxel = document.probe_voxel();
+    const glm::dvec3 voxel = cross_of(document.session.view.slices, document.probe_voxel());
     if (glm::distance(voxel, followed_voxel_) <= STIR_VOXELS) return;
     followed_voxel_ = voxel;
     if (document.session.view.arrangement != Arrangement::slices || pixels_.x == 0) return;

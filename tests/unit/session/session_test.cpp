@@ -82,7 +82,7 @@ const std::string EVERYTHING = R"({
              "sampling": "exact", "paging": "never", "detail": 0.5, "skip_empty_space": false,
              "preintegration": true, "exact_integral": true, "gradient": "analytic", "smooth_borders": true, "saturation": 0.375},
   "view": {"arrangement": "slices", "stereo": {"output": "top_bottom", "eye_distance": 0.0625, "toe_in": true},
-           "slices": {"black": -20, "white": 300.5, "paint_share": 0.25, "zoom": 3}, "overview_zoom": 1.5,
+           "slices": {"black": -20, "white": 300.5, "paint_share": 0.25, "zoom": 3, "cross": [4, 5.5, 6]}, "overview_zoom": 1.5,
            "volume": false, "meshes": false, "cut_box": true, "solo": 7},
   "interaction": {"resolution": 0.5, "frames_per_second": 25, "screenshot_scale": 3, "workspace_scale": 2.5},
   "cut": {"lower": [1, 2, 3], "upper": [40, 50, 60.5]},
@@ -160,7 +160,7 @@ TEST_CASE("every key of a session is read")
                                            0.375});
     CHECK(session.view == ViewSettings{Arrangement::slices,
                                        {StereoOutput::top_bottom, 0.0625, true},
-                                       {-20.0, 300.5, 0.25, 3.0},
+                                       {-20.0, 300.5, 0.25, 3.0, {}, glm::dvec3(4, 5.5, 6)},
                                        1.5,
                                        false,
                                        false,

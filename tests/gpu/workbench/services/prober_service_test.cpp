@@ -67,3 +67,35 @@ TEST_CASE_FIXTURE(ProberAlone, "prober: pushing goes along the view, and the rad
     prober.act(ScaleProbe{1e-9});
     CHECK(document().session.probe.brush.radius_voxels == MIN_RADIUS_VOXELS);
 }
+
+TEST_CASE_FIXTURE(ProberAlone, "prober: slices stay where they are below a pointer that hovers, and follow all else")
+{
+    document().session.view.arrangement = Arrangement::slices;
+    const auto cross = [&] { return document().session.view.slices.cross; };
+    const glm::dvec3 first = document().probe_voxel();
+    prober.act(ProbeTo{.pane = 0, .pixel = {3.0, 4.0}, .hovers = true});
+    CHECK(cross() == first);
+    seen = glm::dvec3(10.0, 11.0, 12.0);
+    prober.act(ProbeAlong{.pane = 0, .pixel = {3.0, 4.0}, .hovers = true});
+    CHECK(document().probe_voxel() == *seen);
+    CHECK(cross() == first);
+    // In a slice the probe comes into its plane, whatever its depth was.
+    prober.act(ProbeTo{.pane = 1, .pixel = {10.0, 10.0}, .hovers = true});
+    CHECK(document().probe_voxel().z == doctest::Approx(first.z));
+    CHECK(document().probe_voxel().x != doctest::Approx(first.x));
+    // A step of the wheel moves the slice by one voxel and leaves the others.
+    prober.act(PushProbe{.pane = 1, .voxels = 1.0});
+    CHECK(std::abs(cross()->z - first.z) == doctest::Approx(1.0));
+    CHECK(cross()->x == doctest::Approx(first.x));
+    CHECK(document().probe_voxel().z == doctest::Approx(cross()->z));
+    prober.act(ProbeTo{.pane = 1, .pixel = {12.0, 10.0}});
+    CHECK(!cross());
+    // A script's placement leads the slices as it always has, and outside of slices nothing holds them.
+    prober.act(PlaceProbe{.voxel = glm::dvec3(5.0, 6.0, 7.0), .hovers = true});
+    CHECK(cross());
+    prober.act(PlaceProbe{.voxel = glm::dvec3(5.0, 6.0, 8.0)});
+    CHECK(!cross());
+    document().session.view.arrangement = Arrangement::single;
+    prober.act(ProbeTo{.pane = 0, .pixel = {3.0, 4.0}, .hovers = true});
+    CHECK(!cross());
+}
