@@ -7,6 +7,7 @@
 
 #include "engine/workbench/edits/edit.h"
 #include "engine/workbench/models/preferences.h"
+#include "engine/workbench/sight/cut_handles.h"
 #include "engine/workbench/sight/gestures.h"
 #include "engine/workbench/sight/hits.h"
 #include "ui/files/file_list.h"
@@ -124,6 +125,24 @@ void Viewport::press(const ButtonEvent& event, const When& when, const Model& mo
     if (gesture_ != Gesture::press && gesture_ != Gesture::paint) click_.reset();
 }
 
+/// Takes hold of a handle of the clip box, if the box is shown and a handle is there.
+bool Viewport::takes_handle(const ButtonEvent& event, const Model& model)
+{
+    if (!model.session.view.cut_box || event.mods != 0 || pane_ >= model.panes.size()) return false;
+    cut_before_ = model.session.cut;
+    handle_ = handle_at(cut_handles(model.panes[pane_].pane, cut_before_, model.volume), in_pane(event.at, model));
+    return handle_.has_value();
+}
+
+/// Moves the face of the clip box that is held.
+void Viewport::drag_handle(const glm::dvec2& pixel, const Model& model, Actions& actions) const
+{
+    if (pane_ >= model.panes.size()) return;
+    const CutBox cut =
+        dragged(cut_before_, *handle_, model.panes[pane_].pane, model.volume, in_pane(pressed_, model), pixel);
+    set(actions, model, [&](Session& s) { s.cut = cut; });
+}
+
 void Viewport::press_left(const ButtonEvent& event, const When& when, const Model& model, Actions& actions)
 {
     const Pane::Kind kind = kind_of_pane(model);
@@ -136,6 +155,8 @@ void Viewport::press_left(const ButtonEvent& event, const When& when, const Mode
         gesture_ = Gesture::outline;
         outline_tool().begin(pane, glm::dvec2(layout_.begin + pane.box.begin), in_pane(event.at, model),
                              event.mods & GLFW_MOD_CONTROL);
+    } else if (takes_handle(event, model)) {
+        gesture_ = Gesture::cut;
     } else if (event.mods & GLFW_MOD_SHIFT) {
         const bool is_flat = kind == Pane::Kind::map || kind == Pane::Kind::slice;
         gesture_ = is_flat ? Gesture::move_in_map : Gesture::move;
@@ -150,6 +171,9 @@ void Viewport::press_left(const ButtonEvent& event, const When& when, const Mode
         gesture_ = Gesture::stroke;
         actions.emplace_back(ProbeAlong{pane_, in_pane(event.at, model), true});
         actions.emplace_back(Paint{true});
+    } else if (kind == Pane::Kind::slice && model.tool() == Tool::turn && model.preferences.key_set != KeySet::thesis) {
+        gesture_ = Gesture::cross;
+        actions.emplace_back(ProbeTo{pane_, in_pane(event.at, model)});
     } else {
         gesture_ = Gesture::press;
         if (model.tool() == Tool::trace && pane_ < model.panes.size())
@@ -171,6 +195,7 @@ void Viewport::release(const ButtonEvent& event, const Model& model, Actions& ac
     if (gesture_ == Gesture::node) actions.emplace_back(DragNode{false});
     if (gesture_ == Gesture::outline) outline_tool().end();
     if (gesture_ == Gesture::press) click(model, actions);
+    if (gesture_ == Gesture::measure) actions.emplace_back(MeasureAt{pane_, in_pane(last_, model)});
     gesture_ = Gesture::none;
 }
 
@@ -208,6 +233,11 @@ void Viewport::wait(double time_s, Actions& actions)
 /// Begins a drag, once the pointer has moved too far from the press for a click.
 void Viewport::begin_drag(const Model& model, Actions& actions)
 {
+    if (model.tool() == Tool::measure) {  // from the press to the release
+        gesture_ = Gesture::measure;
+        if (!model.measuring_from) actions.emplace_back(MeasureAt{pane_, in_pane(pressed_, model)});
+        return;
+    }
     if (!pressed_node_ || !model.trace.nodes().contains(*pressed_node_)) {
         gesture_ = turning(model);
         return;
@@ -221,20 +251,19 @@ void Viewport::begin_drag(const Model& model, Actions& actions)
     actions.emplace_back(DragNode{true});
 }
 
-/// Makes the probe follow the pointer while no button is held. With pointing tools (select, measure), the probe stays
-/// in place in slices: otherwise the other slices would follow every motion.
-void Viewport::hover(const Model& model, bool jumps, Actions& actions)
+/// Makes the probe follow the pointer while no button is held. `leads`: the slices follow, too.
+void Viewport::hover(const Model& model, bool jumps, bool leads, Actions& actions)
 {
     const Tool tool = model.tool();
     const Pane::Kind kind = kind_of_pane(model);
     const glm::dvec2 pixel = in_pane(last_, model);
     const bool points = tool == Tool::select || tool == Tool::measure;
-    if (kind == Pane::Kind::slice && points) return;
-    const bool lands = kind != Pane::Kind::map && tool != Tool::turn && tool != Tool::select;
+    if (kind == Pane::Kind::slice && points && !leads) return;
+    const bool lands = kind != Pane::Kind::map && (leads || (tool != Tool::turn && tool != Tool::select));
     if (lands)
-        actions.emplace_back(ProbeAlong{pane_, pixel, jumps});
+        actions.emplace_back(ProbeAlong{pane_, pixel, jumps, !leads});
     else
-        actions.emplace_back(ProbeTo{pane_, pixel, jumps});
+        actions.emplace_back(ProbeTo{pane_, pixel, jumps, !leads});
 }
 
 void Viewport::follow(const MoveEvent& event, bool ui_has_mouse, const Model& model, Actions& actions)
@@ -264,9 +293,11 @@ void Viewport::follow(const MoveEvent& event, bool ui_has_mouse, const Model& mo
         case Gesture::cross: actions.emplace_back(ProbeTo{pane_, pixel}); break;
         case Gesture::contrast: drag_contrast(heights, model, actions); break;
         case Gesture::outline: outline_tool().drag(pixel); break;
+        case Gesture::cut: drag_handle(pixel, model, actions); break;
+        case Gesture::measure:
         case Gesture::press: break;
         case Gesture::none:
-            if (is_here) hover(model, jumps, actions);
+            if (is_here) hover(model, jumps, event.mods & GLFW_MOD_SHIFT, actions);
             break;
     }
 }

@@ -8,17 +8,20 @@
 //   paint     paints, while the button is held, at the visible point under the pointer; erase likewise
 //   trace     a click on a node selects it, a drag moves it; a click elsewhere adds a node; any other drag turns
 //   select    a click selects, a double click the whole segment; a drag turns
-//   measure   clicks set the ends of a distance; a drag turns
+//   measure   clicks set the ends of a distance, and so do the ends of a drag
 //
-//   no button          the probe follows in its plane; with paint, erase, trace and measure, it follows visible points
+//   no button          the probe follows in its plane; with paint, erase, trace and measure, it follows visible points.
+//                      Slices stay where they are; with Shift they go through the visible point under the pointer
 //   right              turn tool: zoom; otherwise turn            Shift + left     move
 //   middle             turn tool: move; otherwise turn, with Shift move           Alt + left       turn
 //   wheel              zoom; with Ctrl push the probe away, or pull it closer; with Shift the size of the probe
 //
 // In a map, the gestures for turning and moving both move the camera, and the wheel moves it forward. In a slice, the
-// wheel moves the slice; the gestures for turning drag the cross, which moves the other slices; Ctrl + left changes
-// the contrast, and so does the right button with all tools but turn. With the keys of the thesis, the right button
-// paints in the turn tool.
+// wheel moves the slice; the gestures for turning drag the cross, which moves the other slices, and the press of the
+// turn tool puts it there (not with the keys of the thesis); Ctrl + left changes the contrast, and so does the right
+// button with all tools but turn. With the keys of the thesis, the right button paints in the turn tool.
+//
+// While the clip box is shown (`view.cut_box`), the left button without modifiers drags its handles (cut_handles.h).
 //
 // While the window of operations shows a cut, a drag with the left button draws its outline (outline_tool.h); Ctrl
 // changes between lasso and rectangle.
@@ -27,6 +30,7 @@
 
 #include <optional>
 
+#include "engine/workbench/sight/cut_handles.h"
 #include "ui/panels/panels.h"
 #include "ui/window.h"
 
@@ -61,6 +65,8 @@ private:
         node,     ///< moves the pressed node
         cross,    ///< moves the cross of the slices
         outline,  ///< draws the outline of a cut
+        cut,      ///< moves a face of the clip box
+        measure,  ///< the other end of a distance
         contrast
     };
     struct When {
@@ -68,11 +74,13 @@ private:
     };
     void press(const ButtonEvent& event, const When& when, const Model& model, Actions& actions);
     void press_left(const ButtonEvent& event, const When& when, const Model& model, Actions& actions);
+    bool takes_handle(const ButtonEvent& event, const Model& model);
+    void drag_handle(const glm::dvec2& pixel, const Model& model, Actions& actions) const;
     void release(const ButtonEvent& event, const Model& model, Actions& actions);
     void click(const Model& model, Actions& actions);
     void begin_drag(const Model& model, Actions& actions);
     void follow(const MoveEvent& event, bool ui_has_mouse, const Model& model, Actions& actions);
-    void hover(const Model& model, bool jumps, Actions& actions);
+    void hover(const Model& model, bool jumps, bool leads, Actions& actions);
     void scroll(const ScrollEvent& event, const Model& model, Actions& actions);
     size_t pane_at(const glm::dvec2& at, const Model& model) const;
     Pane::Kind kind_of_pane(const Model& model) const;
@@ -87,7 +95,9 @@ private:
     int button_ = 0;
     glm::dvec2 last_{0.0}, pressed_{0.0};
     std::optional<uint32_t> pressed_node_;
-    bool was_elsewhere_ = true;  ///< at the last motion, the pointer was outside the picture
+    std::optional<CutHandle> handle_;  ///< handle of the clip box that is held
+    CutBox cut_before_;                ///< the box before the drag
+    bool was_elsewhere_ = true;        ///< at the last motion, the pointer was outside the picture
     std::optional<Pointer> pointer_;
     double pressed_s_ = 0.0;              ///< latest time of the left button's press
     bool is_second_ = false;              ///< the press is the second of a double click

@@ -127,7 +127,7 @@ struct Window::Input {
         });
         glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
             of(w).last_cursor = in_pixels(w, {x, y});
-            add(w, MoveEvent{cursor(w)});
+            add(w, MoveEvent{cursor(w), mods(w)});
         });
         glfwSetScrollCallback(window, [](GLFWwindow* w, double, double y) {
             add(w, ScrollEvent{y, mods(w), cursor(w)});

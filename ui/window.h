@@ -42,6 +42,7 @@ struct ButtonEvent {
 };
 struct MoveEvent {
     glm::dvec2 at{0.0};
+    int mods = 0;
 };
 struct ScrollEvent {
     double steps = 0.0;

@@ -1,6 +1,7 @@
 """Slices that are zoomed, moved and stepped through, and what else hands do at panels: groups that are dragged and
 renamed, density that is painted, points of the curve without a mouse on it, pictures with a scale bar."""
 import json
+import re
 import unittest
 
 from seen import Seen, in_short
@@ -49,6 +50,61 @@ class Slices(Seen):
         self.check_key("Home", "fit_view")
         self.assertEqual(self.saved(session)["view"]["slices"]["zoom"], 1.0)
         self.finish()
+
+    def slices(self):
+        """The numbers of the slices that their panes state, by axis."""
+        return {seen["text"][0]: int(seen["text"].split()[1]) for seen in self.seen()
+                if re.match("[xyz] [0-9]+ \\(0 to ", seen["text"])}
+
+    def test_slices_follow_a_click_and_shift_but_no_mere_motion(self):
+        self.scan()
+        self.press("F6")
+        self.see("z ")
+        self.see_picture()
+        before = self.slices()
+        x, y = self.middle()
+        places = [(x - 130, y - 120), (x - 100, y - 100), *((x + 90 + step, y - 130) for step in (0, 40, 80)), (x + 130, y + 90)]
+        for tool in ("alt+1", "alt+2"):   # turn, paint
+            self.do("key", tool, pause_s=0)
+            for place in places:
+                self.check_follows(lambda place=place: self.do("mousemove", *place, pause_s=0),
+                                   "probe_to" if tool == "alt+1" else "place_probe")
+                self.see_picture()
+                self.assertEqual(self.slices(), before, (tool, place))
+        self.do("key", "alt+1", pause_s=0)
+        # A click in the slice across z moves the two others.
+        self.do("mousemove", x + 150, y - 150, "click", 1, pause_s=0)
+        after = self.until(lambda: self.slices() != before and self.slices(), "other slices")
+        self.assertEqual(after["z"], before["z"])
+        self.assertNotEqual(after["x"], before["x"])
+        self.assertNotEqual(after["y"], before["y"])
+        # With Shift the pointer leads them, over the volume, too.
+        self.do("keydown", "shift", "mousemove", x - 135, y - 115, "mousemove", x - 130, y - 110, "keyup", "shift", pause_s=0)
+        self.until(lambda: self.slices() != after, "slices that follow")
+        self.finish()
+
+    def test_a_cut_takes_two_clicks(self):
+        session = self.scan()
+        self.click_does("set view.cut_box", "Clip box", "Tools")
+        self.see_picture()
+        self.assertNotIn("cut", json.loads(session.read_text()))
+        x, y = self.middle()
+        # The near face along z is below: seen from the front, 64 voxels are a little more than half of the height.
+        bottom = self.bottom_handle()
+        self.check_drag(bottom, [(bottom[0], bottom[1] - 20 * step) for step in (1, 2, 3)], "set cut.lower")
+        cut = self.saved(session)["cut"]
+        self.assertGreater(cut["lower"][2], 5)
+        self.assertEqual(cut["lower"][:2], [0, 0])
+        self.finish()
+
+    def bottom_handle(self):
+        """The lowest place below the middle of the picture where a handle's blue ring is."""
+        x, y = self.middle()
+        width, height, rows = self.pixels()
+        blue = [row for row in range(y, height - 40)
+                if rows[row][3 * x + 2] > 180 and rows[row][3 * x] < 80 and rows[row][3 * x + 1] < 120]
+        self.assertTrue(blue)
+        return x, (min(blue) + max(blue)) // 2
 
     def test_a_group_is_renamed_and_dragged_below_another(self):
         session = self.scan()

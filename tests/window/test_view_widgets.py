@@ -194,7 +194,7 @@ class Widgets(Seen):
             self.click_on(words)
             self.until(lambda: self.settings()[before:], f"setting of {key}")
             self.assertEqual(self.settings()[before:], [{"interaction": {key: False}}])
-        self.click_on("Edges of the cutting planes")
+        self.click_on("Clip box with handles")
         self.until(lambda: self.settings()[-1] == {"view": {"cut_box": True}}, "setting of the edges")
         self.finish()
 

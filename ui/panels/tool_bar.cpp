@@ -174,6 +174,21 @@ void step_button(const char* sign, const char* id, const Model& model, Actions& 
     ImGui::SameLine(0.0f, 0.25f * ImGui::GetFontSize());
 }
 
+/// Draws the button that shows the clip box with its handles.
+void clip_button(const Model& model, Actions& actions)
+{
+    const Shortcut* const shortcut = shortcut_named("cut_box");
+    if (!shortcut) return;
+    const bool is_shown = model.session.view.cut_box;
+    ImGui::PushStyleColor(ImGuiCol_Button, color_of(is_shown ? ColorRole::chosen : ColorRole::bar));
+    ImGui::BeginDisabled(!model.is_open);
+    if (ImGui::Button("Clip box")) actions.push_back(shortcut->action(model, 1.0));
+    ImGui::EndDisabled();
+    ImGui::PopStyleColor();
+    hint((name_with_key("cut_box", model.keymap) + "\nDrag a handle to cut the volume open.").c_str());
+    ImGui::SameLine(0.0f, ImGui::GetFontSize());
+}
+
 void active_group(const Model& model, Actions& actions)
 {
     const uint8_t group = model.brush().group;
@@ -241,6 +256,7 @@ void tool_bar(const ImVec2& at, float width, const Model& model, Actions& action
     const bool has_names = width >= NAMED_FROM * ImGui::GetFontSize();
     for (const ToolRow& row : tool_rows()) tool_button(row, has_names, model, actions);
     ImGui::SameLine(0.0f, ImGui::GetFontSize());
+    clip_button(model, actions);
     active_group(model, actions);
     mouse_words(model);
     ImGui::End();

@@ -430,7 +430,7 @@ constexpr Shortcut SHORTCUTS[] = {
         [](const Model&, double) -> Action { return FocusOn{"menu"}; }, "Shift+F10"),
     both("volume", VIEWS_KEYS, "Volume", Mode::tap, toggle_view<&ViewSettings::volume>, "F2"),
     both("meshes", VIEWS_KEYS, "Nodes, internodes and probe", Mode::tap, toggle_view<&ViewSettings::meshes>, "F3"),
-    both("cut_box", VIEWS_KEYS, "Edges of the cutting planes", Mode::tap, toggle_view<&ViewSettings::cut_box>, ""),
+    both("cut_box", VIEWS_KEYS, "Clip box with handles", Mode::tap, toggle_view<&ViewSettings::cut_box>, ""),
 
     both("tool_turn", TOOL_KEYS, "Turn with the mouse", Mode::tap, take<Tool::turn>, "Alt+1"),
     both("tool_paint", TOOL_KEYS, "Paint with the mouse", Mode::tap, take<Tool::paint>, "Alt+2"),

@@ -25,8 +25,8 @@ constexpr ToolRow TOOL_ROWS[] = {
      "space to deselect. The right button turns the volume.",
      "select", "turn"},
     {Tool::measure, "Measure", "tool_measure",
-     "Click two points to measure the distance between them. The right button turns the volume.", "set a point",
-     "turn"},
+     "Click two points, or drag from one to the other, to measure the distance. The right button turns the volume.",
+     "set a point", "turn"},
 };
 
 }  // namespace
@@ -54,7 +54,7 @@ std::string mouse_in_words(Tool tool, Pane::Kind over, KeySet set)
     const char* const right = tool == Tool::turn && set == KeySet::thesis ? "paint" : row.right;
     if (over == Pane::Kind::map) return "left: turn, Shift + left or middle: move, wheel: closer or farther";
     if (over == Pane::Kind::slice && tool == Tool::turn)
-        return sentence("left: move the cross, right: ", right,
+        return sentence("left: set the cross-hairs, right: ", right,
                         ", middle: move, wheel: next slice, Ctrl + wheel: zoom");
     if (over == Pane::Kind::slice)
         return sentence("left: ", row.left, ", right: contrast, middle: move, wheel: next slice, Ctrl + wheel: zoom");

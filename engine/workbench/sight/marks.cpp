@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "engine/workbench/lists/group_list.h"
+#include "engine/workbench/sight/cut_handles.h"
 #include "engine/workbench/sight/hits.h"
 #include "engine/workbench/sight/words.h"
 
@@ -50,6 +51,7 @@ public:
             trace_in_slice();
             if (is_for_screen_) brush_ring();
         }
+        if (is_for_screen_) clip_box();
         if (is_for_screen_) drawn_tool();
         if (is_for_screen_) link();
         measurements();
@@ -164,6 +166,19 @@ private:
                glm::all(glm::lessThan(glm::min(a, b), glm::dvec2(pixels_)));
     }
 
+    /// Draws the handles of the clip box, larger where the pointer would take hold, and in slices the box's edges.
+    void clip_box()
+    {
+        if (!model_.session.view.cut_box) return;
+        const CutBox& cut = model_.session.cut;
+        if (is_slice()) closed(box_in_slice(pane_, cut, model_.volume), LIGHT);
+        const std::vector<CutHandle> handles = cut_handles(pane_, cut, model_.volume);
+        const bool is_below = model_.pointer && model_.pointer->pane == index_;
+        const std::optional<CutHandle> held = is_below ? handle_at(handles, model_.pointer->pixel) : std::nullopt;
+        for (const CutHandle& handle : handles)
+            ring(handle.at, (held == handle ? 7.0 : 4.5) * units_, AXES[size_t(handle.axis)], 4.0);
+    }
+
     /// Marks the node or the centre line to which the tools snap now.
     void drawn_tool()
     {
@@ -179,8 +194,7 @@ private:
     void link()
     {
         const std::optional<uint32_t> selected = model_.trace.selection().node();
-        const bool adds_nodes = model_.tool() == Tool::trace || model_.tool() == Tool::turn;
-        if (!selected || !adds_nodes || model_.is_painting || model_.drags_node) return;
+        if (!selected || model_.tool() != Tool::trace || model_.is_painting || model_.drags_node) return;
         if (pane_.kind == Pane::Kind::map || pane_.shot.right_eye) return;
         const glm::dvec3 from = model_.trace.node(*selected).position, to = tool();
         const auto begin = pixel_of(from), end = pixel_of(to);
@@ -293,7 +307,8 @@ private:
         if (model_.panes.size() < 2) return;
         const glm::dvec2 at(8.0 * units_, 6.0 * units_), next(0.0, 20.0 * units_);
         if (!is_slice()) return label(at, {0.0, 0.0}, pane_.name);
-        label(at, {0.0, 0.0}, slice_in_words(pane_.axis, model_.probe_voxel, model_.volume));
+        label(at, {0.0, 0.0},
+              slice_in_words(pane_.axis, cross_of(model_.session.view.slices, model_.probe_voxel), model_.volume));
         if (!is_for_screen_) return;
         const bool is_here = model_.pointer && model_.pointer->pane == index_;
         if (is_here)

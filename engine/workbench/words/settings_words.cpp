@@ -138,8 +138,8 @@ std::string special_sentence(const Session& was, const Session& is)
         return is.view.meshes ? "Nodes, internodes and the probe's ball are drawn"
                               : "Nodes, internodes and the probe's ball are not drawn";
     if (was.view.cut_box != is.view.cut_box)
-        return is.view.cut_box ? "The edges of the cutting planes are drawn"
-                               : "The edges of the cutting planes are not drawn";
+        return is.view.cut_box ? "The clip box is drawn: drag its handles to cut"
+                               : "The clip box is not drawn; it still cuts";
     if (was.view.solo != is.view.solo) return sentence_about_solo(is);
     if (was.interaction.workspace_scale != is.interaction.workspace_scale) {
         const double scale = std::round(100.0 * is.interaction.workspace_scale) / 100.0;

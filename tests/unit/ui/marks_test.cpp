@@ -90,16 +90,20 @@ TEST_CASE("A slice says which it is, shows the nodes that it passes through, and
 TEST_CASE("The link that a new node would get is drawn before it is made, with its length")
 {
     Panes panes;
+    panes.world.session.probe.tool = Tool::trace;
     CHECK(!Panes::says(panes.over(panes.view), "40 mm"));
     panes.world.trace.select({{0}, {}});
     CHECK(Panes::says(panes.over(panes.view), "40 mm"));
-    panes.world.session.probe.tool = Tool::measure;
-    CHECK(!Panes::says(panes.over(panes.view), "40 mm"));
+    for (const Tool other : {Tool::turn, Tool::measure}) {
+        panes.world.session.probe.tool = other;
+        CHECK(!Panes::says(panes.over(panes.view), "40 mm"));
+    }
 }
 
 TEST_CASE("Where the trace has drawn the tools a ring says so, and the link leads there")
 {
     Panes panes;
+    panes.world.session.probe.tool = Tool::trace;
     panes.world.trace.select({{0}, {}});
     panes.world.model.tool_voxel = {45.0, 50.0, 50.0};  // as the middle of what is touched
     CHECK(Panes::says(panes.over(panes.view), "30 mm"));
@@ -184,4 +188,20 @@ TEST_CASE("What is painted or traced is named beside its colour, in the first pa
     CHECK(Panes::says(many, "group 8"));
     CHECK(!Panes::says(many, "group 9"));  // 300 pixels have room for nine lines above the scale bar
     CHECK(Panes::says(many, "and 247 more groups"));
+}
+
+TEST_CASE("The clip box has a handle for each face that a drag can move, the larger one under the pointer")
+{
+    Panes panes;
+    panes.world.session.cut = {{10.0, 20.0, 30.0}, {90.0, 80.0, 70.0}};
+    const glm::dvec2 far_x(230.0, 150.0);  // (90, 50) voxels of 2 mm, which are 2 pixels
+    CHECK(ends_around(panes.over(panes.view), far_x, 4.5) == 0);
+    panes.world.session.view.cut_box = true;
+    for (const Pane* pane : {&panes.view, &panes.slice}) {
+        CHECK(ends_around(panes.over(*pane), far_x, 4.5) >= 48);
+        CHECK(ends_around(panes.over(*pane), {150.0, 150.0}, 4.5) == 0);  // z is seen end on
+    }
+    panes.world.model.pointer = Pointer{0, far_x};
+    CHECK(ends_around(panes.over(panes.view), far_x, 7.0) >= 48);
+    CHECK(ends_around(panes.over(panes.slice), far_x, 7.0) == 0);
 }

@@ -62,7 +62,10 @@ struct Mouse {
     {
         for (const Action& action : last) said += (said.empty() ? "" : " ") + std::string(row_of(action).id);
     }
-    void move(double x, double y, bool ui_has_mouse = false) { handle({MoveEvent{{x, y}}, now_s}, ui_has_mouse); }
+    void move(double x, double y, bool ui_has_mouse = false, int mods = 0)
+    {
+        handle({MoveEvent{{x, y}, mods}, now_s}, ui_has_mouse);
+    }
     void press(int button, double x, double y, int mods = 0)
     {
         handle({ButtonEvent{button, mods, true, {x, y}}, now_s});
@@ -98,12 +101,13 @@ struct Mouse {
 TEST_CASE("Each button means in each tool what the tool says")
 {
     const auto drag = [](Tool tool, int button, int mods = 0) { return Mouse(tool).drag(button, 40.0, 40.0, mods); };
-    for (const Tool tool : {Tool::turn, Tool::trace, Tool::select, Tool::measure}) {
+    for (const Tool tool : {Tool::turn, Tool::trace, Tool::select}) {
         CAPTURE(TOOLS[size_t(tool)].name);
         CHECK(drag(tool, LEFT) == "orbit");
     }
     for (const Tool tool : {Tool::paint, Tool::erase})
         CHECK(drag(tool, LEFT) == "probe_along paint_here probe_along probe_along paint_here");
+    CHECK(drag(Tool::measure, LEFT) == "measure_at measure_at");  // from the press to the release
     CHECK(drag(Tool::turn, RIGHT) == "zoom zoom");
     Mouse as_in_the_thesis(Tool::turn);
     as_in_the_thesis.world.preferences.key_set = KeySet::thesis;
@@ -257,8 +261,9 @@ TEST_CASE("An upward drag with the right button comes nearer, and Shift + wheel 
 
 TEST_CASE("In a slice the cross is dragged, and the contrast with Ctrl or the right button")
 {
-    for (const Tool tool : {Tool::turn, Tool::select, Tool::measure})
-        CHECK(Mouse(tool, true).drag(LEFT, 300.0, 40.0) == "probe_to");
+    CHECK(Mouse(Tool::select, true).drag(LEFT, 300.0, 40.0) == "probe_to");
+    CHECK(Mouse(Tool::measure, true).drag(LEFT, 300.0, 40.0) == "measure_at measure_at");
+    CHECK(Mouse(Tool::turn, true).drag(LEFT, 300.0, 40.0) == "probe_to probe_to probe_to");
     for (const Tool tool : {Tool::paint, Tool::trace, Tool::select, Tool::measure})
         CHECK(Mouse(tool, true).drag(RIGHT, 300.0, 40.0) == "set set");
     CHECK(Mouse(Tool::turn, true).drag(RIGHT, 300.0, 40.0) == "zoom zoom");
@@ -271,7 +276,14 @@ TEST_CASE("In a slice the cross is dragged, and the contrast with Ctrl or the ri
     const Session after = patched(mouse.world.session, mouse.last.at(0).as<Set>()->patch);
     CHECK(*after.view.slices.black == doctest::Approx(500.0));
     CHECK(*after.view.slices.white == doctest::Approx(1500.0));
-    // Tools that point leave the other slices where they are.
+    // A click of the turn tool is enough, except with the keys of the thesis.
+    for (const KeySet set : {KeySet::modern, KeySet::thesis}) {
+        Mouse clicking(Tool::turn, true);
+        clicking.world.preferences.key_set = set;
+        clicking.click(300.0, 40.0);
+        CHECK(clicking.said == (set == KeySet::thesis ? "" : "probe_to"));
+    }
+    // Tools that point leave the probe where it is.
     Mouse pointing(Tool::measure, true);
     pointing.move(300.0, 40.0);
     CHECK(pointing.said == "");
@@ -313,5 +325,56 @@ TEST_CASE("While a cut is chosen, a drag draws its outline, with Ctrl a rectangl
             CHECK(!tool.drawn());
             CHECK(mouse.drag(LEFT, left + 40.0, 40.0, SHIFT) != "");  // moves
             tool.set_on(false);
+        }
+}
+
+TEST_CASE("Slices follow a pointer without a button only while Shift is held")
+{
+    const auto hovers = [](const Action& action) {
+        const auto* to = action.as<ProbeTo>();
+        return to ? to->hovers : action.as<ProbeAlong>()->hovers;
+    };
+    for (const Spelling<Tool>& tool : TOOLS)
+        for (const double x : {40.0, 300.0}) {
+            CAPTURE(tool.name);
+            CAPTURE(x);
+            Mouse mouse(tool.value, true);
+            mouse.move(x, 40.0);
+            for (const Action& action : mouse.last) CHECK(hovers(action));
+            mouse.move(x + 1.0, 40.0, false, SHIFT);
+            REQUIRE(mouse.last.size() == 1);
+            REQUIRE(mouse.last[0].as<ProbeAlong>());  // onto what is seen, with every tool
+            CHECK(!hovers(mouse.last[0]));
+        }
+    Mouse pressing(Tool::turn, true);
+    pressing.press(LEFT, 300.0, 40.0);
+    CHECK(!hovers(pressing.last.at(0)));
+}
+
+TEST_CASE("Handles of the clip box are dragged in the volume and in a slice, with each tool, while the box is shown")
+{
+    for (const Spelling<Tool>& tool : TOOLS)
+        for (const double left : {0.0, 200.0}) {
+            CAPTURE(tool.name);
+            CAPTURE(left);
+            Mouse mouse(tool.value, true);
+            Session& session = mouse.world.session;
+            session.cut = {{0.0, 0.0, 0.0}, {100.0, 80.0, 100.0}};
+            // The far face along x: at 50 pixels to the right of the middle, half-way up what is left along y.
+            const glm::dvec2 handle(left + 150.0, 160.0);
+            CHECK(mouse.drag(LEFT, handle.x, handle.y) != "set set");
+            session.view.cut_box = true;
+            CHECK(mouse.drag(LEFT, handle.x, handle.y, SHIFT) != "set set");
+            mouse.press(LEFT, handle.x + 2.0, handle.y);
+            CHECK(mouse.last.empty());
+            mouse.move(handle.x - 28.0, handle.y + 70.0);
+            REQUIRE(mouse.last.size() == 1);
+            const Session after = patched(session, mouse.last[0].as<Set>()->patch);
+            CHECK(after.cut.upper.x == doctest::Approx(70.0));
+            CHECK(after.cut.upper.y == 80.0);
+            mouse.move(handle.x - 500.0, handle.y);  // not beyond the other face
+            CHECK(patched(session, mouse.last.at(0).as<Set>()->patch).cut.upper.x == 0.0);
+            mouse.release(LEFT, handle.x - 500.0, handle.y);
+            CHECK(mouse.last.empty());
         }
 }

@@ -53,8 +53,8 @@ void marks(const Model& model, Actions& actions)
                      "Painted and traced groups by name and colour.");
     is_other |= flag(model, "Depth and filling at the probe", interaction.probe_label, "probe_label",
                      "Depth of the probe in the structure, and its filled share.");
-    const bool has_box =
-        flag(model, "Edges of the cutting planes", view.cut_box, "cut_box", "Lines along the edges of the uncut part.");
+    const bool has_box = flag(model, "Clip box with handles", view.cut_box, "cut_box",
+                              "Edges of the uncut part, and a handle for each of its faces.");
     if (is_other) set(actions, model, [&](Session& s) { s.interaction = interaction; });
     if (has_box) set(actions, model, [&](Session& s) { s.view = view; });
 }

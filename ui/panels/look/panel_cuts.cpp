@@ -80,11 +80,11 @@ void cutting_planes(const Model& model, Actions& actions)
     hint("All six cutting planes back to the volume's faces.");
     ImGui::SameLine();
     bool has_box = model.session.view.cut_box;
-    if (ImGui::Checkbox("Edges in the picture", &has_box))
+    if (ImGui::Checkbox("Clip box with handles", &has_box))
         set(actions, model, [&](Session& s) { s.view.cut_box = has_box; });
     hint(
-        "Lines along the edges of the uncut part, in the colours of the axes. They are shown while a plane "
-        "moves in any case.");
+        "Lines along the edges of the uncut part, in the colours of the axes, and a handle for each of its faces: drag "
+        "them in the volume or in a slice.");
 }
 
 /// Draws a clip plane's distance from the eye; 0 means no plane.

@@ -36,15 +36,16 @@ bool stereo_controls(StereoSettings& stereo, bool& is_reset, Actions& actions)
     return is_other;
 }
 
-/// Draws sliders for the slices, one per axis, in voxels from 0. They move the probe, through which the slices pass.
+/// Draws sliders for the slices, one per axis, in voxels from 0. They move the cross-hairs, and the probe to these.
 void slice_sliders(const Model& model, Actions& actions)
 {
+    const glm::dvec3 cross = cross_of(model.session.view.slices, model.probe_voxel);
     for (int axis = 2; axis >= 0; --axis) {
         const double last = double(model.volume.size[axis]) - 1.0;
-        double slice = std::clamp(std::floor(model.probe_voxel[axis]), 0.0, last);
+        double slice = std::clamp(std::floor(cross[axis]), 0.0, last);
         const char* const names[] = {"Slice x", "Slice y", "Slice z"};
         if (!slider(names[axis], slice, 0.0, last, "%.0f")) continue;
-        glm::dvec3 voxel = model.probe_voxel;
+        glm::dvec3 voxel = cross;
         voxel[axis] = std::floor(slice + 0.5) + 0.5;
         actions.push_back(PlaceProbe{voxel});
     }
