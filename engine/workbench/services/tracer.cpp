@@ -196,7 +196,7 @@ void Tracer::act(const SelectAt& action)
     const Pane seen = others_.pane(action.pane);
     const TraceGraph& trace = document.annotator.document().trace;
     const TraceHit hit =
-        trace_hit(trace, seen, action.pixel, document.volume(), groups_in_pane(document.session, seen));
+        trace_hit(trace, seen, action.pixel, document.volume(), groups_in_pane(document.session, seen), SPARE_PIXELS);
     if ((hit.node || hit.internode) && !is_hidden(seen, action.pixel, hit)) {
         this->trace(SelectOp{
             .near = {}, .number = hit.node ? hit.node : hit.internode, .is_internode = !hit.node, .within_voxels = {}});

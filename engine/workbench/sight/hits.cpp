@@ -46,8 +46,36 @@ std::bitset<256> groups_in_pane(const Session& session, const Pane& pane)
     return drawn;
 }
 
+namespace {
+
+/// Of the parts that a click meets, the nearest to the viewer; of all others, the nearest in pixels.
+class Choice {
+public:
+    explicit Choice(double spare) : spare_(spare) {}
+
+    /// `away`: pixels outside the part's own reach; at most 0 for a part that is met.
+    void offer(double away, const TraceHit& hit)
+    {
+        if (away <= 0.0) {
+            if (!met_ || hit.depth < met_->depth) met_ = hit;
+        } else if (away < spare_) {
+            spare_ = away;
+            near_ = hit;
+        }
+    }
+    const std::optional<TraceHit>& met() const { return met_; }
+    TraceHit chosen() const { return met_ ? *met_ : near_; }
+
+private:
+    double spare_;
+    std::optional<TraceHit> met_;
+    TraceHit near_{};
+};
+
+}  // namespace
+
 TraceHit trace_hit(const TraceGraph& trace, const Pane& pane, const glm::dvec2& pixel, const VolumeInfo& volume,
-                   const std::bitset<256>& drawn)
+                   const std::bitset<256>& drawn, double spare)
 {
     const Camera& camera = pane.shot.camera;
     const glm::uvec2 pixels = pane.pixels();
@@ -57,18 +85,16 @@ TraceHit trace_hit(const TraceGraph& trace, const Pane& pane, const glm::dvec2& 
         return is_slice ? std::abs(behind_plane(camera, point)) <= std::max(radius, half_voxel)
                         : is_before_eye(camera, depth);
     };
-    TraceHit hit;
-    double nearest = std::numeric_limits<double>::infinity();
+    Choice choice(spare);
     for (const auto& [number, node] : trace.nodes()) {
         if (!drawn[node.group]) continue;
         const auto at = project(camera, pixels, node.position);
-        if (!at || at->depth >= nearest || !is_shown(node.position, at->depth, node.radius)) continue;
+        if (!at || !is_shown(node.position, at->depth, node.radius)) continue;
         const double reach = std::max(node.radius / pixel_size(camera, pixels, at->depth), NODE_PIXELS);
-        if (glm::distance(at->pixel, pixel) > reach) continue;
-        hit = {.node = number, .internode = {}, .depth = at->depth, .radius = node.radius};
-        nearest = at->depth;
+        choice.offer(glm::distance(at->pixel, pixel) - reach,
+                     {.node = number, .internode = {}, .depth = at->depth, .radius = node.radius});
     }
-    if (hit.node) return hit;
+    if (choice.met()) return choice.chosen();
     for (const auto& [number, internode] : trace.internodes()) {
         if (!drawn[internode.group]) continue;
         const glm::dvec3 &a = trace.node(internode.a).position, &b = trace.node(internode.b).position;
@@ -79,11 +105,10 @@ TraceHit trace_hit(const TraceGraph& trace, const Pane& pane, const glm::dvec2& 
         const double depth = glm::mix(from->depth, to->depth, near.share),
                      radius = trace.radius_of(internode, near.share);
         const double reach = std::max(radius / pixel_size(camera, pixels, depth), INTERNODE_PIXELS);
-        if (near.pixels > reach || depth >= nearest || !is_shown(point, depth, radius)) continue;
-        hit = {.node = {}, .internode = number, .depth = depth, .radius = radius};
-        nearest = depth;
+        if (!is_shown(point, depth, radius)) continue;
+        choice.offer(near.pixels - reach, {.node = {}, .internode = number, .depth = depth, .radius = radius});
     }
-    return hit;
+    return choice.chosen();
 }
 
 }  // namespace shvr::ui

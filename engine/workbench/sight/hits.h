@@ -15,12 +15,16 @@ struct TraceHit {
     double depth = 0.0;                       ///< physical units along the view
     double radius = 0.0;                      ///< radius in physical units
 };
+/// For a click that can mean nothing else: the distance, in pixels, from the rim of the nearest node or internode.
+inline constexpr double SPARE_PIXELS = 10.0;
+
 /// Returns a node within its ring or within 6 pixels of its centre (of several, the one nearest to the viewer). If
-/// there is none, returns an internode within 4 pixels of its centre line. In a slice, considers only parts that cross
+/// there is none, returns an internode within 4 pixels of its centre line; and if there is none, the node or internode
+/// that is nearest in pixels, at most `spare` farther away. In a slice, considers only parts that cross
 /// its plane or lie within half a voxel of it. Ignores parts in groups that are not in `drawn`. Takes time linear in
 /// the trace's size.
 TraceHit trace_hit(const TraceGraph& trace, const Pane& pane, const glm::dvec2& pixel, const VolumeInfo& volume,
-                   const std::bitset<256>& drawn);
+                   const std::bitset<256>& drawn, double spare = 0.0);
 
 /// Returns the groups whose nodes and internodes a pane draws. Slices draw them even if `view.meshes` is off. Cutting
 /// planes do not cut the trace, so they hide no group.

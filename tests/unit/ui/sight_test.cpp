@@ -222,6 +222,16 @@ TEST_CASE("A click hits the nearest node under it, or else an internode, within 
     CHECK(trace_hit(trace, view, {40.0, 53.0}, info, EVERY_GROUP).internode == 0u);
     CHECK(!trace_hit(trace, view, {40.0, 57.0}, info, EVERY_GROUP).internode.has_value());
     CHECK(trace_hit(trace, view, {40.0, 50.0}, info, EVERY_GROUP).depth == doctest::Approx(150.0));
+    // A click that meets none of it counts for the nearest, if that is near enough.
+    const auto nearest = [&](double x, double y) {
+        return trace_hit(trace, view, {x, y}, info, EVERY_GROUP, SPARE_PIXELS);
+    };
+    CHECK(nearest(40.0, 63.9).internode == 0u);
+    CHECK(!nearest(40.0, 64.1).internode.has_value());
+    CHECK(nearest(4.1, 50.0).node == 0u);
+    CHECK(!nearest(3.9, 50.0).node.has_value());
+    CHECK(nearest(40.0, 53.0).internode == 0u);
+    CHECK(nearest(60.0, 50.0).node == 2u);
     CHECK(!trace_hit(TraceGraph(), view, {20.0, 50.0}, info, EVERY_GROUP).node.has_value());
 }
 
