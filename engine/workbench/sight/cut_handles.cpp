@@ -8,7 +8,7 @@ namespace shvr::ui {
 namespace {
 
 /// Least angle, as a sine, between a handle's axis and the line of sight.
-constexpr double LEAST_SINE = 0.1;
+constexpr double MIN_SINE = 0.1;
 
 struct Corners {
     glm::dvec3 lower, upper;
@@ -46,7 +46,7 @@ std::optional<double> place_along(const Pane& pane, const glm::dvec3& origin, co
 {
     const Sight sight = sight_through(pane, pixel);
     const double cosine = glm::dot(sight.along, along), square = 1.0 - cosine * cosine;
-    if (square < LEAST_SINE * LEAST_SINE) return std::nullopt;
+    if (square < MIN_SINE * MIN_SINE) return std::nullopt;
     const glm::dvec3 between = sight.from - origin;
     return (glm::dot(between, along) - cosine * glm::dot(between, sight.along)) / square;
 }

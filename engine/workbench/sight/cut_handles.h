@@ -17,7 +17,7 @@ struct CutHandle {
     int axis = 0;
     bool upper = false;      ///< the far face
     glm::dvec2 at{0.0};      ///< pixels of the pane
-    glm::dvec3 middle{0.0};  ///< of the face, in volume space
+    glm::dvec3 middle{0.0};  ///< middle of the face, in volume space
     double voxel = 0.0;      ///< position of the face along the axis
     bool operator==(const CutHandle&) const = default;
 };

@@ -47,7 +47,7 @@ TEST_CASE("a dragged face stays under the pointer, whatever the camera and the s
             CAPTURE(handle.axis);
             CAPTURE(handle.upper);
             CHECK(handle_at(handles, handle.at + glm::dvec2(1.0, 0.0)) == handle);
-            // Towards the middle of the box by four voxels, and beside the axis by a few pixels.
+            // Towards the middle of the box by four voxels.
             glm::dvec3 wanted = handle.middle / volume().spacing;
             wanted[handle.axis] += handle.upper ? -4.0 : 4.0;
             const glm::dvec2 to = project(pane.shot.camera, pane.pixels(), wanted * volume().spacing)->pixel;
