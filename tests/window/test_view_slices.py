@@ -5,6 +5,7 @@ import re
 import unittest
 
 from seen import Seen, in_short
+from window import WINDOW
 
 
 class Slices(Seen):
@@ -88,8 +89,6 @@ class Slices(Seen):
         self.click_does("set view.cut_box", "Clip box", "Tools")
         self.see_picture()
         self.assertNotIn("cut", json.loads(session.read_text()))
-        x, y = self.middle()
-        # The near face along z is below: seen from the front, 64 voxels are a little more than half of the height.
         bottom = self.bottom_handle()
         self.check_drag(bottom, [(bottom[0], bottom[1] - 20 * step) for step in (1, 2, 3)], "set cut.lower")
         cut = self.saved(session)["cut"]
@@ -100,9 +99,8 @@ class Slices(Seen):
     def bottom_handle(self):
         """The lowest place below the middle of the picture where a handle's blue ring is."""
         x, y = self.middle()
-        width, height, rows = self.pixels()
-        blue = [row for row in range(y, height - 40)
-                if rows[row][3 * x + 2] > 180 and rows[row][3 * x] < 80 and rows[row][3 * x + 1] < 120]
+        _, _, rows = self.pixels()
+        blue = [row for row in range(y + 60, WINDOW[1] - 40) if rows[row][3 * x + 2] > rows[row][3 * x] + 80]
         self.assertTrue(blue)
         return x, (min(blue) + max(blue)) // 2
 

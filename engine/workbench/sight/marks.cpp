@@ -104,6 +104,20 @@ private:
         }
         closed(points, color, width);
     }
+    /// Draws a handle: a thick ring with one halo around it.
+    void knob(const glm::dvec2& middle, bool is_held, const glm::dvec3& color)
+    {
+        constexpr int CORNERS = 24;
+        const double radius = (is_held ? 7.0 : 4.5) * units_;
+        const auto corner = [&](int i) {
+            const double angle = 2.0 * std::numbers::pi * i / CORNERS;
+            return middle + radius * glm::dvec2(std::cos(angle), std::sin(angle));
+        };
+        for (const bool is_halo : {true, false})
+            for (int i = 0; i < CORNERS; ++i)
+                marks_.strokes.push_back(
+                    {corner(i), corner(i + 1), is_halo ? DARK : color, (is_halo ? 6.0 : 4.0) * units_});
+    }
     void label(const glm::dvec2& at, const glm::dvec2& anchor, std::string text, const glm::dvec3& color = LIGHT)
     {
         marks_.labels.push_back({at, anchor, std::move(text), color});
@@ -175,8 +189,7 @@ private:
         const std::vector<CutHandle> handles = cut_handles(pane_, cut, model_.volume);
         const bool is_below = model_.pointer && model_.pointer->pane == index_;
         const std::optional<CutHandle> held = is_below ? handle_at(handles, model_.pointer->pixel) : std::nullopt;
-        for (const CutHandle& handle : handles)
-            ring(handle.at, (held == handle ? 7.0 : 4.5) * units_, AXES[size_t(handle.axis)], 4.0);
+        for (const CutHandle& handle : handles) knob(handle.at, held == handle, AXES[size_t(handle.axis)]);
     }
 
     /// Marks the node or the centre line to which the tools snap now.
