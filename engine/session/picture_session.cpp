@@ -60,8 +60,8 @@ std::optional<PictureSession> session_in_picture(const fs::path& picture)
     if (!text && is_tiff_name(picture)) return std::nullopt;  // a volume
     if (!text)
         fail(picture.string(),
-             ": is a picture without a session in it; expected one that shvr made, or a session, a "
-             "project folder or a volume");
+             ": is a picture without a session in it; expected one that shvr made with --with-session, or a "
+             "session, a project folder or a volume");
     PictureSession found{*text, {}};
     if (const std::optional<std::string> project = text_in(picture, PROJECT_TEXT))
         found.project = (folder_of(picture) / *project).lexically_normal();

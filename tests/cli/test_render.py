@@ -68,7 +68,10 @@ class Render(CliTest):
         session = self.write_session()
         plain, _ = self.render(session, "plain.png")
         self.check_refused("render", plain, "-o", self.folder / "again.png",
-                           says=["plain.png: is a picture without a session in it"])
+                           says=["plain.png: is a picture without a session in it", "made with --with-session"])
+        plain, _ = self.render(session, "plain.tif")
+        self.check_refused("render", plain, "-o", self.folder / "again.png",
+                           says=["plain.tif: has 3 channels", "rendered again if it was made with --with-session"])
         (self.folder / "scan.raw").write_bytes(bytes(range(64)))
         scan = self.write_session("scan.json", volume={"path": "scan.raw", "raw": "4x4x4:uint8:little:0"})
         kept, _ = self.render(scan, "kept.png", "--with-session")

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine/base/file.h"
+#include "engine/base/image_tiff.h"
 #include "engine/live/previewer.h"
 #include "engine/picture/picture_file.h"
 #include "engine/session/picture_session.h"
@@ -124,6 +125,20 @@ Json report_of(Opened& opened, const Picture& picture, const std::optional<Ranks
     return report;
 }
 
+/// Opens the input. A TIFF of several channels may be a picture that was made here, and is to be rendered again.
+Opened open_input(const RenderCommandOptions& options, LongWork& work, const CheckSession& check)
+{
+    try {
+        return open(options.input, options.common, work, {.only_look = true}, check);
+    } catch (const UsageError&) {
+        throw;
+    } catch (const Error& error) {
+        const std::string why = error.what();
+        if (!is_tiff_name(options.input) || why.find(" channels (") == std::string::npos) throw;
+        fail(why, "; a picture is rendered again if it was made with --with-session");
+    }
+}
+
 void run_render(RenderCommandOptions options)
 {
     Ranks& ranks = ranks_for(options);
@@ -156,7 +171,7 @@ void run_render(RenderCommandOptions options)
         check_output_is_not(session.volume_path, options.output);
         check_camera(options.camera, session, volume);
     };
-    Opened opened = open(options.input, options.common, work, {.only_look = true}, check);
+    Opened opened = open_input(options, work, check);
     const std::string& wanted = options.camera.empty() ? opened.session.camera_name : options.camera;
     const Camera camera = camera_named(opened.session, wanted, opened.source->info());
     const std::optional<ProbeLook> probe = shown_probe(opened.session, *opened.renderer, *opened.annotator);

@@ -188,7 +188,8 @@ class Figure(CliTest):
             found = struct.unpack(">IIB", content[chunk + 4:chunk + 13]) if chunk >= 0 else None
             self.assertEqual(found, None if dots is None else (dots, dots, 1))
         for options, says in [(["--size", "0x10mm"], "expected WIDTHxHEIGHTmm"), (["--size", "85mm"], "--size is"),
-                              (["--size", "9000x10mm"], "1 to 65536 pixels"), (["--dpi", "1"], "--dpi is 1; expected")]:
+                              (["--size", "9000x10mm"], "1 to 65536 pixels"), (["--dpi", "1"], "--dpi is 1; expected"),
+                              (["--size", "85x60mm", "--dpi", "0"], "--dpi is 0; expected")]:
             self.check_refused("render", self.session, "-o", self.folder / "x.png", *options, says=[says], status=2)
 
     def test_a_tiff_holds_its_session(self):

@@ -58,13 +58,14 @@ void add_figure_options(CLI::App& command, FigureOptions& options)
 glm::uvec2 take_picture_size(const std::string& text, FigureOptions& options)
 {
     if (!text.ends_with("mm")) return parse_size(text);
-    if (options.dots_per_inch == 0.0) options.dots_per_inch = PRINT_DPI;
+    if (!options.dots_per_inch) options.dots_per_inch = PRINT_DPI;
     const std::string numbers = text.substr(0, text.size() - std::string_view("mm").size());
     const size_t times = std::min(numbers.find('x'), numbers.size());
     const std::optional<double> width = number_of(trimmed(std::string_view(numbers).substr(0, times)));
     const std::optional<double> height =
         times < numbers.size() ? number_of(trimmed(std::string_view(numbers).substr(times + 1))) : std::nullopt;
-    const glm::uvec2 size = width && height ? pixels_of_print({*width, *height}, options.dots_per_inch) : glm::uvec2(0);
+    const glm::uvec2 size =
+        width && height ? pixels_of_print({*width, *height}, *options.dots_per_inch) : glm::uvec2(0);
     if (size.x == 0 || size.y == 0)
         throw UsageError(sentence("--size is ", in_quotes(text), "; expected WIDTHxHEIGHTmm with 1 to ", MAX_IMAGE_SIDE,
                                   " pixels along each side, as in 85x60mm"));
@@ -73,13 +74,13 @@ glm::uvec2 take_picture_size(const std::string& text, FigureOptions& options)
 
 void add_resolution(PictureTexts& texts, const FigureOptions& options)
 {
-    if (options.dots_per_inch != 0.0) texts.emplace_back(PICTURE_DPI, digits_of(options.dots_per_inch));
+    if (options.dots_per_inch) texts.emplace_back(PICTURE_DPI, digits_of(*options.dots_per_inch));
 }
 
 void check_figure(FigureOptions& options)
 {
-    const double dpi = options.dots_per_inch;
-    if (dpi != 0.0 && !(dpi >= MIN_PRINT_DPI && dpi <= MAX_PRINT_DPI))
+    const double dpi = options.dots_per_inch.value_or(PRINT_DPI);
+    if (!(dpi >= MIN_PRINT_DPI && dpi <= MAX_PRINT_DPI))
         throw UsageError(sentence("--dpi is ", dpi, "; expected a number from ", MIN_PRINT_DPI, " to ", MAX_PRINT_DPI));
     const double pixels = options.elements.text_pixels;
     if (pixels != 0.0 && !(pixels >= MIN_TEXT_PIXELS && pixels <= MAX_TEXT_PIXELS))

@@ -2,6 +2,7 @@
 // shvr render --scale-bar, --color-bar, --legend, --axes, --title, --text: what is drawn over a picture, or over each
 // frame of a movie, for publications.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,8 @@ namespace shvr::cli {
 
 struct FigureOptions {
     ui::FigureElements elements;
-    std::vector<std::string> texts;  ///< as given: "X,Y,Z:TEXT"
-    double dots_per_inch = 0.0;      ///< stored in the picture; 0: not given
+    std::vector<std::string> texts;       ///< as given: "X,Y,Z:TEXT"
+    std::optional<double> dots_per_inch;  ///< stored in the picture
 };
 void add_figure_options(CLI::App& command, FigureOptions& options);
 /// Returns the size in pixels of "512x384" or "85x60mm", which chooses a resolution if none is given. Throws UsageError
