@@ -23,6 +23,42 @@ struct AnnotateCommandOptions {
     bool verbose = false;
 };
 
+/// A line of a script: an operation on the annotation, or a file that is loaded into it as by the window.
+struct Command {
+    int number = 0;  ///< its line, from 1
+    std::variant<ScriptOp, ui::LoadAnnotation> what;
+};
+
+/// The operation of a line, null for a load.
+const ScriptOp* op_of(const Command& command)
+{
+    return std::get_if<ScriptOp>(&command.what);
+}
+
+/// Reads a "load" line as the window's action of that name.
+ui::LoadAnnotation read_load(const JsonNode& line)
+{
+    const ui::LoadAnnotation load = *ui::read_action(line).as<ui::LoadAnnotation>();
+    if (load.what == ui::FileUse::scan)
+        line["what"].refuse("mask, offsets, trace, look or by_contents: a scan is opened, not loaded");
+    std::error_code ignored;
+    if (!std::filesystem::exists(load.path, ignored)) line["path"].refuse("a file that exists");
+    return load;
+}
+
+/// Reads and checks the whole script before anything is run.
+std::vector<Command> read_commands(const std::filesystem::path& path)
+{
+    std::vector<Command> commands;
+    for_each_line(path, [&](const JsonNode& line, int number) {
+        if (line.is_object() && line["op"].is("load"))
+            commands.push_back({number, read_load(line)});
+        else
+            commands.push_back({number, read_script_op(line)});
+    });
+    return commands;
+}
+
 /// Drives the workbench by the lines of a script instead of by input to the window.
 class Replay {
 public:
@@ -176,6 +212,24 @@ public:
         in_words([&] { bench.perform(op); });
         tell(bench.messages().last());
     }
+    void operator()(const ui::LoadAnnotation& load)
+    {
+        const uint64_t told_before = bench.messages().count();
+        in_words([&] {
+            bench.perform(load);
+            for (uint64_t turn = 0; bench.has_work(); ++turn) {
+                if (work.is_asked_to_stop()) throw Stopped("stopped; nothing of this line was done");
+                rest(turn);
+                bench.advance();
+            }
+            if (const ui::Message* error = bench.messages().first_after(told_before, ui::Weight::error))
+                fail(error->text);
+        });
+        if (const ui::Message* warning = bench.messages().first_after(told_before, ui::Weight::warning))
+            warn({sentence(at, ": ", warning->text)}, options.common);
+        else
+            tell(bench.messages().last());
+    }
     void operator()(const ExpectOp& op)
     {
         const Document& document = annotator().document();
@@ -196,10 +250,10 @@ public:
 };
 
 /// Checks before anything is painted.
-void check_radii(const std::vector<ScriptLine>& script, const std::string& name, const VolumeInfo& volume)
+void check_radii(const std::vector<Command>& script, const std::string& name, const VolumeInfo& volume)
 {
-    for (const ScriptLine& line : script)
-        if (const auto* paint = std::get_if<PaintOp>(&line.op)) try {
+    for (const Command& line : script)
+        if (const auto* paint = op_of(line) ? std::get_if<PaintOp>(op_of(line)) : nullptr) try {
                 check_radius(paint->radius_voxels, volume.spacing, volume.size);
             } catch (const Error& error) {
                 fail(name, ":", line.number, ": ", error.what());
@@ -219,15 +273,21 @@ bool is_painting_operation(const ScriptOp& op)
 }
 
 /// Checks, before anything is done, whether a script that saves has file names to save to.
-void check_names(const std::vector<ScriptLine>& script, const std::string& name, const std::string& project,
+void check_names(const std::vector<Command>& script, const std::string& name, const std::string& project,
                  const Session& session)
 {
-    const ScriptLine* save = nullptr;
+    const Command* save = nullptr;
     bool paints = false, raises = false;
-    for (const ScriptLine& line : script) {
-        if (!save && std::holds_alternative<SaveOp>(line.op)) save = &line;
-        const auto* const paint = std::get_if<PaintOp>(&line.op);
-        paints |= paint ? paint->paints_group : is_painting_operation(line.op);
+    for (const Command& line : script) {
+        if (const auto* const load = std::get_if<ui::LoadAnnotation>(&line.what)) {
+            paints |= load->what == ui::FileUse::mask;
+            raises |= load->what == ui::FileUse::offsets;
+            continue;
+        }
+        const ScriptOp& op = *op_of(line);
+        if (!save && std::holds_alternative<SaveOp>(op)) save = &line;
+        const auto* const paint = std::get_if<PaintOp>(&op);
+        paints |= paint ? paint->paints_group : is_painting_operation(op);
         raises |= paint && paint->density;
     }
     if (!save) return;
@@ -268,18 +328,19 @@ void run_annotate(const AnnotateCommandOptions& options)
 {
     const std::shared_ptr<Hold> hold = hold_of(options.project, options.common);  // refused before any work
     const std::string name = name_of_script(options.script);
-    const std::vector<ScriptLine> script = read_script(options.script);
+    const std::vector<Command> script = read_commands(options.script);
     LongWork work(options.common.quiet);
-    Opened opened =
-        open(options.project, options.common, work,
-             {.start = options.fresh ? Work::Start::fresh : Work::Start::as_left,
-              .takes_over = std::ranges::any_of(script, [](const ScriptLine& line) { return changes_work(line.op); }),
-              .hold = hold,
-              .program = "shvr annotate"},
-             [&](const Session& session, const VolumeInfo&) {
-                 check_outside(options.project, session, options.common);
-                 if (!session_file_of(options.project).empty()) check_names(script, name, options.project, session);
-             });
+    Opened opened = open(options.project, options.common, work,
+                         {.start = options.fresh ? Work::Start::fresh : Work::Start::as_left,
+                          .takes_over = std::ranges::any_of(
+                              script, [](const Command& line) { return !op_of(line) || changes_work(*op_of(line)); }),
+                          .hold = hold,
+                          .program = "shvr annotate"},
+                         [&](const Session& session, const VolumeInfo&) {
+                             check_outside(options.project, session, options.common);
+                             if (!session_file_of(options.project).empty())
+                                 check_names(script, name, options.project, session);
+                         });
     if (opened.project.empty()) refuse_bare_volume(options.project);
     check_radii(script, name, opened.source->info());
     ui::Workbench bench(*opened.renderer, {.has_servo = false, .is_script = true});
@@ -301,7 +362,10 @@ void run_annotate(const AnnotateCommandOptions& options)
         replay.share = 1.0 / double(script.size());
         replay.done = double(done) * replay.share;
         work.show(replay.done, {}, -1.0);
-        std::visit(replay, script[done].op);
+        if (const ScriptOp* const op = op_of(script[done]))
+            std::visit(replay, *op);
+        else
+            replay(std::get<ui::LoadAnnotation>(script[done].what));
     }
     bench.flush();
     check_validation(opened);

@@ -1,0 +1,71 @@
+"""The line "load" of scripts: a mask, offsets, a trace and a transfer function are added as steps that can be undone."""
+import unittest
+
+from harness import CliTest, Volume
+
+SIZE = (6, 5, 4)
+VOXELS = 6 * 5 * 4
+
+
+class Load(CliTest):
+    def setUp(self):
+        super().setUp()
+        name = Volume(SIZE, [100] * VOXELS).write(self.folder).name
+        self.session = self.write_session(volume={"path": name}, annotation={
+            "mask": "paint.mask", "density": "raised.offset", "trace": "veins.graphml"})
+        self.groups = bytes(3 if i % 7 == 0 else 0 for i in range(VOXELS))
+        (self.folder / "other.mask").write_bytes(self.groups)
+
+    def annotate(self, *operations, status=0):
+        script = self.write_script("script.jsonl", operations)
+        if status:
+            return self.check_refused("annotate", self.session, "--script", script, status=status)
+        return self.check_json("annotate", self.session, "--script", script)
+
+    def path(self, name):
+        return str(self.folder / name)
+
+    def test_a_mask_a_trace_and_offsets_are_loaded_and_undone(self):
+        painted = self.groups.count(3)
+        (self.folder / "other.swc").write_text("1 5 1 1 1 1 -1\n2 5 3 1 1 1 1\n")
+        # Offsets and a trace as another project writes them.
+        made = self.write_session("made.json", volume={"path": "volume.nhdr"}, annotation={
+            "mask": "made.mask", "density": "made.offset"})
+        self.check("annotate", made, "--script", self.write_script("made.jsonl", [
+            {"op": "density", "brush": "fill", "region": "ball", "threshold": 50, "offset": 40, "radius": 1.2,
+             "path": [[3, 3, 2]]}, {"op": "save"}]))
+        self.annotate(
+            {"op": "load", "what": "mask", "path": self.path("other.mask")},
+            {"op": "expect", "voxels_in_group": {"3": painted}, "nodes": 0},
+            {"op": "load", "what": "trace", "path": self.path("other.swc")},
+            {"op": "expect", "nodes": 2, "internodes": 1, "voxels_in_group": {"3": painted}},
+            {"op": "load", "path": self.path("other.swc")},  # by its contents; what is there already is not added twice
+            {"op": "undo"},
+            {"op": "expect", "voxels_with_offset": 0})
+        raised = self.check_json("annotate", self.session, "--script", self.write_script("o.jsonl", [
+            {"op": "load", "what": "offsets", "path": self.path("made.offset")}]))
+        self.assertEqual(raised["commands"], 1)
+        self.annotate({"op": "expect", "voxels_with_offset": 0}, status=3)
+        self.annotate({"op": "undo"}, {"op": "expect", "voxels_with_offset": 0, "voxels_in_group": {"3": painted}},
+                      {"op": "save"})
+        self.assertEqual((self.folder / "paint.mask").read_bytes(), self.groups)
+
+    def test_what_cannot_be_loaded_is_refused_by_its_line_and_earlier_lines_stay(self):
+        script = self.folder / "script.jsonl"
+        first = {"op": "load", "what": "mask", "path": self.path("other.mask")}
+        said = self.annotate(first, {"op": "load", "path": self.path("none.mask")}, status=1)
+        self.assertIn(f'{script}:2: key path is "{self.folder}/none.mask"; expected a file that exists', said)
+        said = self.annotate(first, {"op": "load", "what": "scan", "path": self.path("volume.nhdr")}, status=1)
+        self.assertIn(f"{script}:2: key what is ", said)
+        self.assertFalse((self.folder / "session.journal").exists(), "scripts are checked before anything is done")
+        (self.folder / "short.mask").write_bytes(bytes(VOXELS - 1))
+        said = self.annotate(first, {"op": "load", "what": "mask", "path": self.path("short.mask")}, status=1)
+        self.assertIn(f"{script}:2: {self.folder / 'short.mask'}", said)
+        self.assertIn("is kept", said)
+        self.annotate({"op": "expect", "voxels_in_group": {"3": self.groups.count(3)}})
+        said = self.annotate({"op": "load", "what": "mask", "file": "other.mask"}, status=1)
+        self.assertIn("file", said)
+
+
+if __name__ == "__main__":
+    unittest.main()
