@@ -7,6 +7,7 @@
 #include "engine/annotation/files/offset_export.h"
 #include "engine/annotation/measures/measures.h"
 #include "engine/annotation/patterns/head.h"
+#include "engine/annotation/patterns/stated_axis.h"
 #include "engine/annotation/trace/trace_mesh.h"
 #include "engine/base/atomic_file.h"
 #include "engine/base/text.h"
@@ -71,7 +72,8 @@ std::string pattern_text(const ExportTask& task, const AnnotationView& annotatio
     };
     if (annotation.trace.nodes().empty()) return {};
     if (!sections.is_stated && std::ranges::none_of(annotation.trace.nodes(), is_of_head)) return {};
-    return pattern_csv(measure_patterns(annotation.trace, sections, space), space.unit);
+    const std::optional<StatedAxis> axis = stated_axis(task.axis, option_name(task.names, "axis"));
+    return pattern_csv(measure_patterns(annotation.trace, sections, space, axis), space.unit);
 }
 
 std::filesystem::path plain(const std::filesystem::path& path)
@@ -97,6 +99,10 @@ void fields(Fields& f, ExportTask& task)
     f.text("sections", task.sections,
            {.meaning = "for metrics, the groups of a flower head's parts, such as abaxial=1+4,adaxial=2,floret=3",
             .standard = "groups whose names have these words, or 1, 2, 3"});
+    f.text("axis", task.axis,
+           {.meaning = "for metrics, a flower head's axis where its trace does not determine it: a point and the "
+                       "direction towards the florets, X,Y,Z,DX,DY,DZ, as traces are exported",
+            .standard = "fitted to the trace"});
 }
 
 std::vector<std::filesystem::path> replaced_files(const ExportTask& task)
@@ -155,12 +161,15 @@ void check(const ExportTask& task)
     check_output(name("trace"), task.trace, {".txt", ".swc", ".graphml", ".rsml"});
     check_output(name("mesh"), task.mesh, {".obj", ".ply"});
     check_output(name("metrics"), task.metrics, {".csv"});
-    if (task.sections.empty()) return;
-    if (task.metrics.empty())
-        throw UsageError(sentence(name("sections"), " is '", task.sections, "' but ", name("metrics"),
-                                  " is not given; expected both, since sections are for the measures"));
+    for (const auto& [key, text] : {std::pair<const char*, const std::string&>("sections", task.sections),
+                                    std::pair<const char*, const std::string&>("axis", task.axis)})
+        if (task.metrics.empty() && !text.empty())
+            throw UsageError(sentence(name(key), " is '", text, "' but ", name("metrics"),
+                                      " is not given; expected both, since ", key, key[0] == 's' ? " are" : " is",
+                                      " for the measures"));
     try {
         static_cast<void>(sections_of(task, {}));
+        static_cast<void>(stated_axis(task.axis, name("axis")));
     } catch (const Error& error) {
         throw UsageError(error.what());
     }

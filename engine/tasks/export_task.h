@@ -32,6 +32,7 @@ struct ExportTask {
     Positions space = Positions::physical;
     std::optional<OmeZarrVersion> version;
     std::string sections;  ///< for `metrics`: the groups of a flower head's parts, parsed by head_sections()
+    std::string axis;      ///< for `metrics`: a flower head's axis, parsed by stated_axis()
 
     OptionNames names = OptionNames::keys;  ///< how messages name options; not an option itself
 };

@@ -164,6 +164,12 @@ class Export(CliTest):
         # Without florets there is no connection, and no other stage.
         self.check("export", session, "--metrics", self.folder / "h.csv", "--sections", "abaxial=1,adaxial=2")
         self.assertIn("pattern,,,florets,0,1", (self.folder / "h.csv").read_text())
+        # A stated axis is used as it is.
+        self.check("export", session, "--metrics", self.folder / "h.csv", "--axis", "11.5,11.5,0,0,0,2")
+        self.assertIn("pattern,,,axis_x,11.5,", (self.folder / "h.csv").read_text())
+        self.assertIn("axis_direction_error: the axis is stated", (self.folder / "h.csv").read_text())
+        self.check_refused("export", session, "--metrics", self.folder / "h.csv", "--axis", "11.5,11.5", status=2,
+                           says=["--axis is '11.5,11.5': found 2 numbers; expected six"])
         for sections, words in [("adaxial", "expected abaxial, adaxial or floret"), ("adaxial=300", "1 to 255")]:
             self.check_refused("export", session, "--metrics", self.folder / "h.csv", "--sections", sections,
                                status=2, says=[words])

@@ -117,7 +117,10 @@ Outputs part_of(Outputs outputs, const TaskChoice& choice)
     for (std::filesystem::path* path : {&task.mask, &task.offset, &task.trace, &task.mesh, &task.metrics})
         if (is_other(!path->empty())) path->clear();
     if (is_other(task.labels)) task.labels = false;
-    if (task.metrics.empty()) task.sections.clear();
+    if (task.metrics.empty()) {
+        task.sections.clear();
+        task.axis.clear();
+    }
     if (is_other(outputs.surface.has_value())) outputs.surface.reset();
     return outputs;
 }
@@ -276,6 +279,11 @@ void add_export(CLI::App& program)
     command->add_option("--sections", options->task.sections,
                         "For --metrics: the groups of a flower head's parts, such as abaxial=1+4,adaxial=2,floret=3; "
                         "unless given, groups whose names have these words, or else 1, 2 and 3");
+    command
+        ->add_option("--axis", options->task.axis,
+                     "For --metrics: a flower head's axis, where its trace does not determine it: a point and the "
+                     "direction towards the florets, as traces are exported; unless given, fitted to the trace")
+        ->type_name("X,Y,Z,DX,DY,DZ");
     add_belief_option(*command, options->common);
     add_input_options(*command, options->common);
     add_output_options(*command, options->common);

@@ -24,6 +24,8 @@ struct Head {
     std::vector<glm::dvec3> places{};  ///< position of each node in the frame, in radii of the head
     std::vector<uint32_t> florets{};   ///< indices of nodes: upper ends of florets' veins, and florets without veins
     std::optional<Receptacle> receptacle{};
+    double covered = 360.0;  ///< degrees around the axis, without the widest gap between nodes
+    std::string doubt{};     ///< why the axis is too uncertain for measures that need it; empty: it is not
 
     double rho(size_t node) const { return std::hypot(places[node].x, places[node].y); }
     glm::dvec3 middle(const VeinLink& link) const { return 0.5 * (places[link.a] + places[link.b]); }
@@ -33,7 +35,9 @@ struct FoundHead {
     std::optional<Head> head{};
     std::string reason{};
 };
-FoundHead find_head(VeinGraph graph);
+FoundHead find_head(VeinGraph graph, const std::optional<StatedAxis>& stated = {});
+/// A head of which less is traced has no measures that hold for a whole turn.
+inline constexpr double WHOLE_HEAD_DEGREES = 270.0;
 
 /// Follows the chain of internodes from a node with one internode to the next end or branch, and returns that node.
 uint32_t other_end(const VeinGraph& graph, uint32_t end);
@@ -48,7 +52,9 @@ void measure_phyllotaxis(const Head& head, PatternRows& rows);
 void measure_supply(const Head& head, PatternRows& rows);
 void measure_stages(const Head& head, PatternRows& rows);
 
-/// Computes all measures. If the trace has no axis, returns one row, which states the reason.
-PatternRows measure_patterns(const TraceGraph& trace, const HeadSections& sections, const TraceSpace& space);
+/// Computes all measures. If the trace has no axis, returns one row, which states the reason. If the axis is too
+/// uncertain, the measures that need it have this reason instead of a value.
+PatternRows measure_patterns(const TraceGraph& trace, const HeadSections& sections, const TraceSpace& space,
+                             const std::optional<StatedAxis>& stated = {});
 
 }  // namespace shvr

@@ -1,129 +1,96 @@
 #include "engine/annotation/patterns/head_axis.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "engine/annotation/patterns/head.h"
 
 namespace shvr {
 
 namespace {
 
-constexpr double AXIS_PLAY = 0.05;  ///< points further than this from their vein's plane have little weight
-/// Weight of the sections' axis of symmetry, relative to the squared errors of the veins' points.
-constexpr double SYMMETRY_WEIGHT = 4.0;
+constexpr int PIECES = 10;           ///< pieces of the head, each left out once
+constexpr size_t STARTS = 5;         ///< best fits that are refined
+constexpr double RIVAL_COST = 10.0;  ///< another axis whose cost is at most this much higher may be the right one
+constexpr int DIRECTIONS = 24;       ///< that fits start from, besides the principal axes
+constexpr double SURE = 3.0349;  ///< standard deviations within which 99 % of a normal distribution in the plane lies
 
-/// A vein's points relative to the axis, as (x, y, along), and the normal of the best-fitting plane through the axis.
-struct AxialCourse {
-    std::vector<glm::dvec3> points;
-    glm::dvec2 normal{1.0, 0.0};
-};
-
-AxialCourse axial(const VeinCourse& course, const HeadAxis& axis)
+/// Unit vector of the direction in which florets lie from veins, or 0 if there are no two sections.
+glm::dvec3 upwards(const VeinGraph& graph, const std::vector<glm::dvec3>& scaled)
 {
-    const auto [x, y] = across(axis.direction);
-    AxialCourse made;
-    double xx = 0.0, xy = 0.0, yy = 0.0;
-    for (const VeinPoint& point : course) {
-        const glm::dvec3 p = point.at - axis.centre;
-        const glm::dvec3 q(glm::dot(p, x), glm::dot(p, y), glm::dot(p, axis.direction));
-        made.points.push_back(q);
-        xx += point.length * q.x * q.x;
-        xy += point.length * q.x * q.y;
-        yy += point.length * q.y * q.y;
+    glm::dvec3 sum[4] = {};
+    double count[4] = {};
+    for (size_t i = 0; i < scaled.size(); ++i) {
+        sum[size_t(graph.nodes()[i].part)] += scaled[i];
+        count[size_t(graph.nodes()[i].part)] += 1.0;
     }
-    const double along = 0.5 * std::atan2(2.0 * xy, xx - yy);
-    made.normal = {-std::sin(along), std::cos(along)};
-    return made;
+    const auto any = [&](HeadPart part) { return count[size_t(part)] > 0.0; };
+    const auto mean = [&](HeadPart part) { return sum[size_t(part)] / count[size_t(part)]; };
+    const HeadPart upper = any(HeadPart::floret) ? HeadPart::floret : HeadPart::adaxial;
+    const HeadPart lower = any(HeadPart::abaxial) ? HeadPart::abaxial : HeadPart::adaxial;
+    return any(upper) && any(lower) ? mean(upper) - mean(lower) : glm::dvec3(0.0);
 }
 
-double cost_of(const std::vector<VeinCourse>& courses, const HeadAxis& axis)
+/// The data of a fit, with the florets' upper ends along `direction`, which points up.
+AxisData data_of(const VeinGraph& graph, const std::vector<glm::dvec3>& scaled, const std::vector<VeinCourse>& courses,
+                 const glm::dvec3& direction)
 {
-    double cost = 0.0, length = 0.0;
+    AxisData data;
     for (const VeinCourse& course : courses) {
-        const AxialCourse made = axial(course, axis);
-        for (size_t i = 0; i < course.size(); ++i) {
-            const double d = glm::dot(glm::dvec2(made.points[i]), made.normal) / AXIS_PLAY;
-            cost += course[i].length * std::log1p(d * d);
-            length += course[i].length;
-        }
+        AxisData::Vein vein;
+        for (const VeinPoint& point : course) vein.points.push_back(point.at);
+        data.veins.push_back(std::move(vein));
     }
-    return cost / length;
+    for (uint32_t i = 0; i < scaled.size(); ++i) {
+        const HeadPart part = graph.nodes()[i].part;
+        if (part == HeadPart::abaxial) data.bowl.push_back({scaled[i]});
+        if (part == HeadPart::adaxial) data.adaxial.push_back({scaled[i]});
+        if (part != HeadPart::floret || graph.links_of(i).size() > 1) continue;
+        const bool is_upper =
+            graph.links_of(i).empty() || glm::dot(direction, scaled[i] - scaled[other_end(graph, i)]) > 0.0;
+        if (is_upper) data.receptacle.push_back({scaled[i]});
+    }
+    return data;
 }
 
-/// The principal axis around which the sections' moments are most equal, and the strength of this symmetry: 1 for a
-/// disc, 0 for a ball, small for half a disc.
-struct Symmetry {
-    glm::dvec3 direction{0.0, 0.0, 1.0};
-    double strength = 0.0;
-};
-
-Symmetry symmetry_of(const Eigen& principal)
+/// The point that the veins, seen along a direction, run towards: the least squares of distances from their lines.
+glm::dvec3 meeting_of(const std::vector<VeinCourse>& courses, const glm::dvec3& direction)
 {
-    Symmetry found;
-    double least = 2.0;
-    for (size_t i = 0; i < 3; ++i) {
-        const double a = principal.values[(i + 1) % 3], b = principal.values[(i + 2) % 3], own = principal.values[i];
-        const double uneven = a + b > 0.0 ? std::abs(a - b) / (a + b) : 1.0;
-        if (uneven >= least) continue;
-        least = uneven;
-        const double differs = std::abs(own - 0.5 * (a + b)) / std::max(own, 0.5 * (a + b));
-        found = {principal.vectors[i], (1.0 - uneven) * (1.0 - uneven) * differs * differs};
+    const auto [x, y] = across(direction);
+    glm::dmat2 normal(1e-6);
+    glm::dvec2 right(0.0);
+    for (const VeinCourse& course : courses) {
+        glm::dvec2 mean(0.0);
+        for (const VeinPoint& point : course) mean += glm::dvec2(glm::dot(point.at, x), glm::dot(point.at, y));
+        mean /= double(course.size());
+        double xx = 0.0, xy = 0.0, yy = 0.0;
+        for (const VeinPoint& point : course) {
+            const glm::dvec2 p = glm::dvec2(glm::dot(point.at, x), glm::dot(point.at, y)) - mean;
+            xx += p.x * p.x;
+            xy += p.x * p.y;
+            yy += p.y * p.y;
+        }
+        const double along = 0.5 * std::atan2(2.0 * xy, xx - yy), length = std::hypot(xx - yy, 2.0 * xy);
+        const glm::dvec2 across_vein(-std::sin(along), std::cos(along));
+        normal += length * glm::outerProduct(across_vein, across_vein);
+        right += length * glm::dot(across_vein, mean) * across_vein;
     }
-    return found;
+    const glm::dvec2 at = glm::inverse(normal) * right;
+    return glm::length(at) < 3.0 ? at.x * x + at.y * y : glm::dvec3(0.0);
 }
 
-/// Normal equations of a Gauss-Newton step; the unknowns are changes of the axis's direction (2) and position (2).
-struct AxisEquations {
-    glm::dmat4 normal{0.0};
-    glm::dvec4 right{0.0};
-    double length = 0.0, squares = 0.0;
-
-    /// Adds the equations of a vein, after eliminating the unknown rotation of the vein's plane around the axis.
-    void add(const VeinCourse& course, const AxialCourse& made)
-    {
-        const glm::dvec2 n = made.normal, in_plane(-n.y, n.x);
-        glm::dvec4 mixed(0.0);
-        double turning = 0.0, turned = 0.0;
-        for (size_t i = 0; i < course.size(); ++i) {
-            const glm::dvec3& p = made.points[i];
-            const double d = glm::dot(glm::dvec2(p), n), turn = -glm::dot(glm::dvec2(p), in_plane);
-            const double weight = course[i].length / (1.0 + d * d / (AXIS_PLAY * AXIS_PLAY));
-            const glm::dvec4 slope(-n.x * p.z, -n.y * p.z, -n.x, -n.y);
-            normal += weight * glm::outerProduct(slope, slope);
-            right -= weight * d * slope;
-            mixed += weight * turn * slope;
-            turning += weight * turn * turn;
-            turned -= weight * turn * d;
-            squares += weight * d * d;
-            length += course[i].length;
-        }
-        if (!(turning > 0.0)) return;
-        normal -= glm::outerProduct(mixed, mixed) / turning;
-        right -= mixed * (turned / turning);
-    }
-};
-
-/// Refines the axis by Gauss-Newton steps. Slight damping preserves components that the veins do not determine.
-HeadAxis refined(const std::vector<VeinCourse>& courses, const Symmetry& symmetry, HeadAxis axis)
+/// Directions that lie evenly over half a sphere, and the principal axes of the sections.
+std::vector<glm::dvec3> directions_of(const Eigen& principal)
 {
-    for (int step = 0; step < 40; ++step) {
-        const auto [x, y] = across(axis.direction);
-        AxisEquations equations;
-        for (const VeinCourse& course : courses) equations.add(course, axial(course, axis));
-        const double sign = glm::dot(symmetry.direction, axis.direction) < 0.0 ? -1.0 : 1.0;
-        const glm::dvec3 towards = sign * symmetry.direction - axis.direction;
-        const double pull = SYMMETRY_WEIGHT * symmetry.strength * equations.squares;
-        equations.normal[0][0] += pull;
-        equations.normal[1][1] += pull;
-        equations.right += pull * glm::dvec4(glm::dot(towards, x), glm::dot(towards, y), 0.0, 0.0);
-        const glm::dvec4 by = glm::inverse(equations.normal + glm::dmat4(1e-9 * equations.length)) * equations.right;
-        const double size = glm::length(by);
-        if (!(size < 1e6)) break;
-        const double share = std::min(1.0, 0.5 / size);
-        axis.centre += share * (by.z * x + by.w * y);
-        axis.direction = glm::normalize(axis.direction + share * (by.x * x + by.y * y));
-        if (size < 1e-14) break;
+    std::vector<glm::dvec3> directions(principal.vectors.begin(), principal.vectors.end());
+    for (int i = 0; i < DIRECTIONS; ++i) {
+        const double z = (i + 0.5) / DIRECTIONS, across_z = std::sqrt(1.0 - z * z);
+        const double turn = 2.0 * std::numbers::pi * i * (std::numbers::phi - 1.0);
+        directions.emplace_back(across_z * std::cos(turn), across_z * std::sin(turn), z);
     }
-    axis.centre -= axis.direction * glm::dot(axis.centre, axis.direction);
-    return axis;
+    return directions;
 }
 
 /// Length of the mean of exp(2 i azimuth): 1 if all veins lie in one plane through the axis, near 0 if all around it.
@@ -143,40 +110,79 @@ double one_sidedness(const std::vector<VeinCourse>& courses, const HeadAxis& axi
     return all > 0.0 ? glm::length(sum) / all : 1.0;
 }
 
-/// Like `one_sidedness`, but of the sections, weighted by the square of the distance from the axis.
-double flatness_around(const Moments& moments, const HeadAxis& axis)
+/// Angle between two axes, without regard to their sense, and distance between them at the origin.
+double turn_between(const HeadAxis& a, const HeadAxis& b)
 {
-    const auto [x, y] = across(axis.direction);
-    const glm::dvec3 off = moments.mean() - axis.centre;
-    const glm::dmat3 squares = moments.covariance() + glm::outerProduct(off, off);
-    const double xx = glm::dot(x, squares * x), yy = glm::dot(y, squares * y), xy = glm::dot(x, squares * y);
-    return xx + yy > 0.0 ? std::hypot(xx - yy, 2.0 * xy) / (xx + yy) : 1.0;
+    return std::asin(std::min(1.0, glm::length(glm::cross(a.direction, b.direction))));
+}
+double shift_between(const HeadAxis& a, const HeadAxis& b)
+{
+    return glm::length(glm::cross(b.centre - a.centre, a.direction));
 }
 
-/// Starting values: the principal axes, and the lines that best meet all pieces by linear least squares. A line of
-/// direction w and moment v = c x w meets the line of direction t through p if t . v + (p x t) . w = 0.
-std::vector<HeadAxis> starts_of(const std::vector<VeinCourse>& courses, const Moments& moments, const Eigen& principal)
+/// Divides veins and points into pieces of equally many points, by azimuth, from the widest gap onwards.
+void divide(AxisData& data, const HeadAxis& axis)
 {
-    std::vector<HeadAxis> starts;
-    for (const glm::dvec3& direction : principal.vectors) starts.push_back({direction, moments.mean()});
-    glm::dmat3 ww(0.0), wv(0.0), vv(0.0);
-    double length = 0.0;
-    for (const VeinCourse& course : courses)
-        for (size_t i = 0; i + 1 < course.size(); ++i) {
-            const glm::dvec3 way = course[i + 1].at - course[i].at;
-            const double weight = glm::length(way);
-            if (!(weight > 0.0)) continue;
-            const glm::dvec3 direction = way / weight, moment = glm::cross(course[i].at, direction);
-            ww += weight * glm::outerProduct(moment, moment);
-            wv += weight * glm::outerProduct(moment, direction);  // columns go with v
-            vv += weight * glm::outerProduct(direction, direction);
-            length += weight;
-        }
-    const glm::dmat3 moment_of = -glm::inverse(vv + glm::dmat3(1e-9 * length)) * glm::transpose(wv);
-    const Eigen lines = eigen_of(ww + wv * moment_of);
-    for (const glm::dvec3& direction : lines.vectors)
-        starts.push_back({direction, glm::cross(direction, moment_of * direction)});
-    return starts;
+    const auto [x, y] = across(axis.direction);
+    double from = 0.0;
+    const auto turn_of = [&, x = x, y = y](const glm::dvec3& at) {
+        const glm::dvec3 p = at - axis.centre;
+        const double turn = std::atan2(glm::dot(p, y), glm::dot(p, x)) / (2.0 * std::numbers::pi) - from;
+        return turn - std::floor(turn);
+    };
+    std::vector<double> turns;
+    for (const auto* points : {&data.receptacle, &data.adaxial, &data.bowl})
+        for (const AxisData::Point& point : *points) turns.push_back(turn_of(point.at));
+    std::ranges::sort(turns);
+    double widest = 0.0, start = 0.0;
+    for (size_t i = 0; i < turns.size(); ++i) {
+        const double gap = i > 0 ? turns[i] - turns[i - 1] : turns[0] + 1.0 - turns.back();
+        if (gap > widest) start = turns[i];
+        widest = std::max(widest, gap);
+    }
+    from = start - 1e-9;
+    for (double& turn : turns) turn -= from + std::floor(turn - from);
+    std::ranges::sort(turns);
+    const auto piece_of = [&](const glm::dvec3& at) {
+        const auto before = std::ranges::lower_bound(turns, turn_of(at)) - turns.begin();
+        return int(std::min<size_t>(size_t(before) * PIECES / turns.size(), PIECES - 1));
+    };
+    for (auto* points : {&data.receptacle, &data.adaxial, &data.bowl})
+        for (AxisData::Point& point : *points) point.of = piece_of(point.at);
+    for (AxisData::Vein& vein : data.veins) {
+        const glm::dvec3 sum = std::accumulate(vein.points.begin(), vein.points.end(), glm::dvec3(0.0));
+        vein.of = piece_of(sum / double(vein.points.size()));
+    }
+}
+
+/// Standard deviation along the direction in which it is largest, of components i and i + 1.
+double largest(const glm::dmat4& covariance, int i)
+{
+    const double half = 0.5 * (covariance[i][i] + covariance[i + 1][i + 1]);
+    const double uneven = std::hypot(0.5 * (covariance[i][i] - covariance[i + 1][i + 1]), covariance[i][i + 1]);
+    return std::sqrt(std::max(0.0, half + uneven));
+}
+
+/// Estimates the errors of the axis (`FoundAxis`).
+void estimate_errors(const AxisData& data, const AxisFit& fit, FoundAxis& found)
+{
+    const auto [x, y] = across(fit.axis.direction);
+    std::array<glm::dvec4, PIECES> changes;
+    glm::dvec4 mean(0.0);
+    for (int piece = 0; piece < PIECES; ++piece) {
+        const HeadAxis other = refined_axis(data, fit.axis, piece, 20).axis;
+        const glm::dvec3 turn = other.direction / glm::dot(other.direction, fit.axis.direction);
+        // Where the other axis meets the plane through the origin across this one.
+        const glm::dvec3 at = other.centre - turn * glm::dot(other.centre, fit.axis.direction) - fit.axis.centre;
+        changes[size_t(piece)] = {glm::dot(turn, x), glm::dot(turn, y), glm::dot(at, x), glm::dot(at, y)};
+        mean += changes[size_t(piece)] / double(PIECES);
+    }
+    glm::dmat4 jackknife(0.0);
+    for (const glm::dvec4& change : changes)
+        jackknife += (PIECES - 1.0) / PIECES * glm::outerProduct(change - mean, change - mean);
+    const glm::dmat4 spread = glm::inverse(fit.information + glm::dmat4(1e-6));
+    found.turn = SURE * std::max(largest(jackknife, 0), largest(spread, 0));
+    found.shift = SURE * std::max(largest(jackknife, 2), largest(spread, 2));
 }
 
 }  // namespace
@@ -216,35 +222,37 @@ std::vector<VeinCourse> abaxial_courses(const VeinGraph& graph, const std::vecto
     return courses;
 }
 
-std::pair<glm::dvec3, glm::dvec3> across(const glm::dvec3& direction)
-{
-    const glm::dvec3 size = glm::abs(direction);
-    const glm::dvec3 other = size.x <= size.y && size.x <= size.z ? glm::dvec3(1.0, 0.0, 0.0)
-                             : size.y <= size.z                   ? glm::dvec3(0.0, 1.0, 0.0)
-                                                                  : glm::dvec3(0.0, 0.0, 1.0);
-    const glm::dvec3 x = glm::normalize(other - direction * glm::dot(other, direction));
-    return {x, glm::cross(direction, x)};
-}
-
-std::optional<HeadAxis> axis_of_veins(const std::vector<VeinCourse>& courses, const Moments& moments)
+std::optional<FoundAxis> axis_of_head(const VeinGraph& graph, const std::vector<glm::dvec3>& scaled,
+                                      const std::vector<VeinCourse>& courses, const Eigen& principal)
 {
     size_t pieces = 0;
     for (const VeinCourse& course : courses) pieces += course.size() - 1;
     if (pieces < 3) return {};
-    const Eigen principal = eigen_of(moments.covariance());
-    const Symmetry symmetry = symmetry_of(principal);
-    std::optional<HeadAxis> best;
-    double least = 0.0;
-    for (const HeadAxis& start : starts_of(courses, moments, principal)) {
-        const HeadAxis axis = refined(courses, symmetry, start);
-        const double one_sided = one_sidedness(courses, axis);
-        if (!(one_sided < 0.9)) continue;
-        const double cost = cost_of(courses, axis) + 2.0 * one_sided + 2.0 * flatness_around(moments, axis);
-        if (best && !(cost < least - 1e-9)) continue;
-        best = axis;
-        least = cost;
+    const glm::dvec3 up = upwards(graph, scaled);
+    std::vector<AxisFit> fits;
+    for (glm::dvec3 direction : directions_of(principal)) {
+        if (glm::dot(direction, up) < 0.0) direction = -direction;
+        const AxisData data = data_of(graph, scaled, courses, direction);
+        fits.push_back(refined_axis(data, {direction, meeting_of(courses, direction)}, -1, 7));
     }
-    return best;
+    std::ranges::sort(fits, {}, &AxisFit::cost);
+    fits.resize(std::min(fits.size(), STARTS));
+    for (AxisFit& fit : fits) {
+        if (glm::dot(fit.axis.direction, up) < 0.0) fit.axis.direction = -fit.axis.direction;
+        fit = refined_axis(data_of(graph, scaled, courses, fit.axis.direction), fit.axis);
+    }
+    std::erase_if(fits, [&](const AxisFit& fit) { return !(one_sidedness(courses, fit.axis) < 0.9); });
+    if (fits.empty()) return {};
+    std::ranges::sort(fits, {}, &AxisFit::cost);
+    const AxisFit& best = fits[0];
+    FoundAxis found{.axis = best.axis};
+    AxisData data = data_of(graph, scaled, courses, best.axis.direction);
+    divide(data, best.axis);
+    estimate_errors(data, best, found);
+    for (const AxisFit& fit : fits)
+        found.is_ambiguous |= fit.cost < best.cost + RIVAL_COST &&
+                              (turn_between(fit.axis, best.axis) > 0.1 || shift_between(fit.axis, best.axis) > 0.1);
+    return found;
 }
 
 }  // namespace shvr

@@ -9,6 +9,10 @@ namespace shvr {
 
 namespace {
 
+/// Largest difference of the two moments across a principal axis, relative to their sum.
+constexpr double MAX_UNEVEN = 0.2;
+constexpr double UNKNOWN = 100.0;  ///< an error of place larger than any head
+
 /// Scaled coordinates: the mean of the sections' nodes is 0, and their root mean square distance from it is 1.
 struct Scale {
     glm::dvec3 mean{0.0};
@@ -108,9 +112,30 @@ void orient(const VeinGraph& graph, HeadFrame& frame)
     frame.y = -frame.y;
 }
 
+/// The axis of a head without abaxial veins, in scaled coordinates.
+struct Principal {
+    std::optional<HeadAxis> axis{};
+    bool is_whole = true;  ///< about as wide to all sides; the middle of a part of a head is not on the axis
+    std::string reason{};
+};
+Principal principal_axis(const VeinGraph& graph, const Scale& scale, const Moments& all)
+{
+    const bool by_florets = graph.count(HeadPart::floret) >= 12;
+    const Moments moments = by_florets ? moments_of(graph, scale, HeadPart::floret) : all;
+    const Eigen principal = eigen_of(moments.covariance());
+    const auto& values = principal.values;
+    const double below = values[1] - values[0], above = values[2] - values[1];
+    if (!(std::max(below, above) > 0.1 * values[2]))
+        return {.reason = "no axis differs from the others, and there are no abaxial veins around one"};
+    const bool is_flat = below >= above;
+    const double wide = values[is_flat ? 2 : 1], narrow = values[is_flat ? 1 : 0];
+    return {.axis = HeadAxis{principal.vectors[is_flat ? 0 : 2], moments.mean()},
+            .is_whole = wide - narrow <= MAX_UNEVEN * (wide + narrow)};
+}
+
 }  // namespace
 
-FoundFrame fit_frame(const VeinGraph& graph)
+FoundFrame fit_frame(const VeinGraph& graph, const std::optional<StatedAxis>& stated)
 {
     const Scale scale = scale_of(graph);
     if (!(scale.size > 0.0)) return {.reason = "the nodes of the sections are at one place"};
@@ -122,27 +147,31 @@ FoundFrame fit_frame(const VeinGraph& graph)
     std::vector<glm::dvec3> scaled;
     for (const VeinNode& node : graph.nodes()) scaled.push_back(scale.scaled(node.at));
     const std::vector<VeinCourse> courses = abaxial_courses(graph, scaled);
-    std::optional<HeadAxis> axis = axis_of_veins(courses, all);
-    if (axis) {
-        frame.residual_degrees = residual_of(courses, *axis);
+    HeadAxis axis{};
+    if (stated) {
+        axis = {stated->direction, scale.scaled(stated->through)};
+        frame.is_stated = true;
+        if (!courses.empty()) frame.residual_degrees = residual_of(courses, axis);
+    } else if (const std::optional<FoundAxis> found = axis_of_head(graph, scaled, courses, shape)) {
+        axis = found->axis;
+        frame.residual_degrees = residual_of(courses, axis);
         if (*frame.residual_degrees > 30.0)
             return {.reason = "the abaxial veins do not run in planes through one axis"};
+        frame.error = {.degrees = found->turn * 180.0 / std::numbers::pi,
+                       .length = found->shift * scale.size,
+                       .is_ambiguous = found->is_ambiguous};
     } else {
-        const bool by_florets = graph.count(HeadPart::floret) >= 12;
-        const Moments moments = by_florets ? moments_of(graph, scale, HeadPart::floret) : all;
-        const Eigen principal = eigen_of(moments.covariance());
-        const double below = principal.values[1] - principal.values[0];
-        const double above = principal.values[2] - principal.values[1];
-        if (!(std::max(below, above) > 0.1 * principal.values[2]))
-            return {.reason = "no axis differs from the others, and there are no abaxial veins around one"};
-        axis = HeadAxis{principal.vectors[below >= above ? 0 : 2], moments.mean()};
+        const Principal principal = principal_axis(graph, scale, all);
+        if (!principal.axis) return {.reason = principal.reason};
+        axis = *principal.axis;
+        if (!principal.is_whole) frame.error = {.degrees = 90.0, .length = UNKNOWN * scale.size, .is_ambiguous = false};
     }
-    frame.up = axis->direction;
+    frame.up = axis.direction;
     std::tie(frame.x, frame.y) = across(frame.up);
     // The point of the axis that is nearest to the mean of the sections' nodes.
-    const glm::dvec3 foot = axis->centre - frame.up * glm::dot(axis->centre, frame.up);
+    const glm::dvec3 foot = axis.centre - frame.up * glm::dot(axis.centre, frame.up);
     frame.centre = scale.mean + scale.size * foot;
-    orient(graph, frame);
+    if (!frame.is_stated) orient(graph, frame);
     return {.frame = frame};
 }
 

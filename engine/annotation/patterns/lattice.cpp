@@ -15,6 +15,7 @@ namespace {
 
 constexpr size_t MIN_FLORETS = 20;
 constexpr double MIN_AGREEMENT = 0.5;  ///< minimum; florets at random reach 0.05
+constexpr double RIVAL_SHARE = 0.05;   ///< a lattice of another angle that agrees only this much less may be right
 constexpr double PLAY = 0.2;           ///< largest error of a pair that counts as in line, relative to its length
 
 double azimuth(const glm::dvec3& place)
@@ -179,6 +180,11 @@ double agreement_of(const FloretLattice& lattice)
     return (agreeing - chance) / (count - chance) * double(numbered) / double(lattice.whorls.size());
 }
 
+double tenths_of_degrees(double radians)
+{
+    return std::round(radians * 3600.0 / TURN) / 10.0;
+}
+
 }  // namespace
 
 double FloretLattice::azimuth_of(int step) const
@@ -199,12 +205,14 @@ FoundLattice find_lattice(const std::vector<glm::dvec3>& all_places)
     std::vector<FloretPair> pairs = pairs_of(places);
     FloretLattice lattice;
     double most = -1.0;
+    std::vector<std::pair<double, Estimate>> tries;  // with their scores
     for (Estimate estimate : estimates_of(pairs)) {
         refine(estimate, pairs);
         FloretLattice tried{.jugacy = estimate.jugacy, .divergence = estimate.divergence, .pairs = pairs};
         number_whorls(places.size(), tried);
         const double in_place = fit_lattice(places, tried);
         const double score = agreement_of(tried) * in_place - 0.03 * (tried.jugacy - 1);
+        tries.push_back({score, {tried.jugacy, tried.divergence, estimate.kept}});
         if (score <= most) continue;
         most = score;
         lattice = std::move(tried);
@@ -214,6 +222,13 @@ FoundLattice find_lattice(const std::vector<glm::dvec3>& all_places)
         return {.reason = sentence("the florets are in no regular lattice: ", int(100.0 * std::max(0.0, most)),
                                    " % of neighbours agree with the best, beyond chance; expected ",
                                    int(100.0 * MIN_AGREEMENT), " % or more")};
+    for (const auto& [score, estimate] : tries) {
+        if (score < most - RIVAL_SHARE) continue;
+        const double off = std::abs(std::remainder(estimate.divergence - lattice.divergence, TURN / lattice.jugacy));
+        if (estimate.jugacy != lattice.jugacy || off > 0.01)
+            return {.reason = sentence("the florets fit lattices of ", tenths_of_degrees(lattice.divergence),
+                                       " and of ", tenths_of_degrees(estimate.divergence), " degrees equally well")};
+    }
     add_interval(places, lattice);
     return {.lattice = std::move(lattice)};
 }

@@ -23,16 +23,30 @@ inline constexpr PatternMeasure PATTERN_MEASURES[] = {
      "times "
      "the sections' root mean square radius long, or a whole vein; large where the axis is uncertain",
      "veins in planes through an axis: 0"},
+    {"axis_direction_error", "degree",
+     "the axis's direction is less wrong than this in 99 of 100 traces: the larger of two estimates, from the spread "
+     "of "
+     "the points and from ten fits, each without a tenth of the head; where it is above 5, axis_place_error above "
+     "0.05, "
+     "or another axis fits nearly as well, measures that need the axis have a reason and no value",
+     "exact traces 0", false},
+    {"axis_place_error", "1",
+     "the same of the axis's place, where it passes the mean of the sections' nodes, in head radii", "exact traces 0",
+     false},
+    {"covered_angle", "degree",
+     "360 less the widest gap of azimuth between nodes of the sections, where rho > 0.3; measures of gaps between "
+     "sectors and per area have a reason and no value below 270",
+     "built-in value of a phantom"},
     {"vein_length_A", "LENGTH", "length of the veins of section A (abaxial, adaxial or floret), without connections",
-     "sum"},
+     "sum", false},
     {"florets", "1",
      "ends of florets' veins that are higher along the axis than the other end of their segment, and nodes of the "
      "florets' section without internodes",
-     "built-in number of a phantom"},
+     "built-in number of a phantom", false},
     {"connections_A_B", "1",
      "internodes between nodes of sections A and B, and nodes at which veins of both meet without such an internode; "
      "floret_floret: internodes of florets' veins between the places nearest, along the veins, to two florets",
-     "thesis, figure 5.3; planted numbers"},
+     "thesis, figure 5.3; planted numbers", false},
     {"connections_A_B_rho_least", "1", "least rho of these connections; of an internode at its middle", "planted"},
     {"connections_A_B_rho_median", "1", "median", "planted"},
     {"connections_A_B_rho_most", "1", "greatest", "planted"},
@@ -55,16 +69,16 @@ inline constexpr PatternMeasure PATTERN_MEASURES[] = {
      "5 % quantile of rho over the nodes of adaxial veins from which all adaxial internodes lead outwards",
      "built-in value of a phantom"},
     {"adaxial_inner_end_least", "1", "the least of them", "built-in value of a phantom"},
-    {"adaxial_parts", "1", "connected parts of the adaxial veins", "b0"},
+    {"adaxial_parts", "1", "connected parts of the adaxial veins", "b0", false},
     {"adaxial_loops", "1", "independent loops: internodes - nodes + parts",
-     "b1: tree 0; grid of n x m nodes (n - 1)(m - 1)"},
+     "b1: tree 0; grid of n x m nodes (n - 1)(m - 1)", false},
     {"adaxial_segments", "1", "chains between nodes with one adaxial internode or three and more; rings count once",
-     "grid, tree"},
-    {"reticulation", "1", "adaxial_loops / adaxial_segments", "tree 0; grid"},
+     "grid, tree", false},
+    {"reticulation", "1", "adaxial_loops / adaxial_segments", "tree 0; grid", false},
     {"anastomoses_per_area", "1/LENGTH^2",
      "adaxial_loops / area across the axis of the ring from the innermost to the outermost node of adaxial veins",
      "grid"},
-    {"adaxial_nodes_degree_N", "1", "nodes of the adaxial section with N adaxial internodes", "grid, tree"},
+    {"adaxial_nodes_degree_N", "1", "nodes of the adaxial section with N adaxial internodes", "grid, tree", false},
     {"divergence_angle", "degree",
      "azimuth from a floret, or whorl of florets, to the next further out: least squares over the lattice of florets "
      "and its centre; 0 to 180 / jugacy",
@@ -112,7 +126,8 @@ inline constexpr PatternMeasure PATTERN_MEASURES[] = {
      "spokes 1"},
     {"supply_overlap_side_K", "1", "the same for florets side by side (within 30 degrees of the direction around)",
      "spokes 0"},
-    {"stage_a", "1", "1 if there are abaxial veins, and no adaxial veins and no florets; else 0", "thesis, figure 5.3"},
+    {"stage_a", "1", "1 if there are abaxial veins, and no adaxial veins and no florets; else 0", "thesis, figure 5.3",
+     false},
     {"stage_b", "1",
      "1 if all three sections exist, florets are at the outer rim alone (rho >= 0.75), and nothing is connected; else "
      "0",

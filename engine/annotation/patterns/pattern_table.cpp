@@ -55,6 +55,12 @@ void PatternRows::miss(const char* measure, const std::string& name, const std::
     rows_.push_back({measure_named(measure), name, {}, reason});
 }
 
+void PatternRows::withdraw(const std::string& reason)
+{
+    for (PatternRow& row : rows_)
+        if (row.measure->needs_axis && row.value) row = {row.measure, row.name, {}, reason};
+}
+
 const PatternRow* PatternRows::find(std::string_view name) const
 {
     const auto found = std::ranges::find(rows_, name, &PatternRow::name);
@@ -86,10 +92,11 @@ std::string pattern_csv(const PatternRows& rows, const std::string& unit)
 
 std::string pattern_codebook()
 {
-    std::string text = "| measure | unit | definition | source, closed form |\n|---|---|---|---|\n";
+    std::string text =
+        "| measure | unit | needs the axis | definition | source, closed form |\n|---|---|---|---|---|\n";
     for (const PatternMeasure& measure : PATTERN_MEASURES)
-        text +=
-            sentence("| ", measure.name, " | ", measure.unit, " | ", measure.definition, " | ", measure.source, " |\n");
+        text += sentence("| ", measure.name, " | ", measure.unit, " | ", measure.needs_axis ? "yes" : "no", " | ",
+                         measure.definition, " | ", measure.source, " |\n");
     return text;
 }
 

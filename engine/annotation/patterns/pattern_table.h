@@ -15,6 +15,7 @@ struct PatternMeasure {
     const char* unit;
     const char* definition;
     const char* source;  ///< equation, closed form, or publication
+    bool needs_axis = true;
 };
 std::span<const PatternMeasure> pattern_measures();
 
@@ -33,6 +34,9 @@ public:
     void add(const char* measure, const std::string& name, double value);
     void miss(const char* measure, const std::string& reason) { miss(measure, measure, reason); }
     void miss(const char* measure, const std::string& name, const std::string& reason);
+
+    /// Replaces the values of all measures that need the axis by a reason.
+    void withdraw(const std::string& reason);
 
     const std::vector<PatternRow>& rows() const { return rows_; }
     /// Null if there is no such row, or if it has no value.

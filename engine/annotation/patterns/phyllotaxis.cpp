@@ -12,6 +12,8 @@ namespace shvr {
 
 namespace {
 
+/// Across a wider gap parastichies cannot be counted: lattices with one more or one less fit as well.
+constexpr double WIDEST_GAP = 45.0;
 constexpr std::pair<double, const char*> RHOS[] = {{0.3, "0.3"}, {0.5, "0.5"}, {0.7, "0.7"}, {0.9, "0.9"}};
 
 /// Length along the receptacle's surface per unit of distance from the axis.
@@ -93,13 +95,32 @@ void add_alignment(const Head& head, const FloretLattice& lattice, const glm::dv
                   has_veins ? "no adaxial vein lies below the florets" : "the trace has no adaxial veins");
 }
 
+/// The widest gap of azimuth between florets, in degrees, except near the axis.
+double gap_of(const Head& head)
+{
+    std::vector<double> azimuths;
+    for (const uint32_t floret : head.florets)
+        if (head.rho(floret) > 0.3)
+            azimuths.push_back(DEGREES * std::atan2(head.places[floret].y, head.places[floret].x));
+    if (azimuths.empty()) return 360.0;
+    std::ranges::sort(azimuths);
+    double widest = azimuths.front() + 360.0 - azimuths.back();
+    for (size_t i = 1; i < azimuths.size(); ++i) widest = std::max(widest, azimuths[i] - azimuths[i - 1]);
+    return widest;
+}
+
 }  // namespace
 
 void measure_phyllotaxis(const Head& head, PatternRows& rows)
 {
     std::vector<glm::dvec3> places;
     for (const uint32_t floret : head.florets) places.push_back(head.places[floret]);
-    const FoundLattice found = find_lattice(places);
+    FoundLattice found = find_lattice(places);
+    if (found.lattice && gap_of(head) > WIDEST_GAP)
+        found = {.reason = sentence("the florets leave a gap of ", int(gap_of(head)),
+                                    " degrees around the axis, so parastichies cannot be counted around the head; "
+                                    "expected ",
+                                    int(WIDEST_GAP), " degrees at most")};
     if (!found.lattice) {
         for (const char* measure : {"divergence_angle", "handedness", "jugacy", "parastichy_alignment"})
             rows.miss(measure, found.reason);

@@ -13,6 +13,8 @@ namespace shvr {
 namespace {
 
 constexpr double SECTOR_RHOS[] = {0.3, 0.5, 0.7};
+constexpr const char* PART_OF_HEAD =
+    "the trace covers a part of the head only (covered_angle); expected 270 degrees or more";
 constexpr const char* SECTOR_NAMES[] = {"0.3", "0.5", "0.7"};
 
 std::vector<const VeinLink*> adaxial_veins(const Head& head)
@@ -113,6 +115,11 @@ void add_sectors(const Head& head, const std::vector<const VeinLink*>& veins, Pa
         const std::vector<double> azimuths = crossings_of(head, veins, SECTOR_RHOS[i]);
         const double count = double(azimuths.size());
         rows.add("sectors_rho_R", "sectors" + at, count);
+        if (head.covered < WHOLE_HEAD_DEGREES) {
+            for (const char* name : {"sector_gap_mean", "sector_gap_cv"})
+                rows.miss(sentence(name, "_rho_R").c_str(), name + at, PART_OF_HEAD);
+            continue;
+        }
         if (azimuths.size() < 2) {
             for (const char* name : {"sector_gap_mean", "sector_gap_cv"})
                 rows.miss(sentence(name, "_rho_R").c_str(), name + at,
@@ -213,7 +220,9 @@ void add_reticulation(const Head& head, const std::vector<const VeinLink*>& vein
     rows.add("adaxial_segments", segments);
     rows.add("reticulation", loops / segments);
     const double area = std::numbers::pi * (outer * outer - inner * inner) * head.radius * head.radius;
-    if (area > 0.0)
+    if (head.covered < WHOLE_HEAD_DEGREES)
+        rows.miss("anastomoses_per_area", PART_OF_HEAD);
+    else if (area > 0.0)
         rows.add("anastomoses_per_area", loops / area);
     else
         rows.miss("anastomoses_per_area", "the adaxial veins cover no ring around the axis");

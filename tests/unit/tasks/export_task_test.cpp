@@ -89,7 +89,7 @@ TEST_CASE("every option of an export is documented")
         CHECK(!option.standard.empty());
     }
     CHECK(names == std::set<std::string>{"mask", "labels", "ome_zarr", "offset", "trace", "break_loops", "mesh",
-                                         "space", "metrics", "sections"});
+                                         "space", "metrics", "sections", "axis"});
 }
 
 TEST_CASE("patterns of flower heads follow the measures where sections are stated, named or in use")
@@ -121,13 +121,15 @@ TEST_CASE("patterns of flower heads follow the measures where sections are state
     CHECK(contains(rows("abaxial=1,floret=3"), "pattern,,,florets,1,1\r\n"));
 }
 
-TEST_CASE("sections are refused without measures, and where they are malformed")
+TEST_CASE("sections and an axis are refused without measures, and where they are malformed")
 {
     const auto refusal = [](ExportTask task) {
         task.names = OptionNames::command_line;
         return error_of([&] { check(task); });
     };
     CHECK(contains(refusal({.sections = "adaxial=2"}), "--sections is 'adaxial=2' but --metrics is not given"));
+    CHECK(contains(refusal({.axis = "1,2,3,0,0,1"}), "--axis is '1,2,3,0,0,1' but --metrics is not given"));
+    CHECK(contains(refusal({.metrics = "a.csv", .axis = "1,2,3"}), "found 3 numbers; expected six"));
     CHECK(
         contains(refusal({.metrics = "a.csv", .sections = "adaxial=two"}), "found 'two'; expected a group, 1 to 255"));
 }

@@ -44,10 +44,10 @@ struct HeadBuilder {
             vein({at(0.2, -1.0), at(0.2, -0.6), at(0.6, -0.4), at(1.0, -0.1)}, ABAXIAL_GROUP);
         }
     }
-    PatternRows measure(const TraceSpace& space = {}) const
+    PatternRows measure(const TraceSpace& space = {}, const std::optional<StatedAxis>& stated = {}) const
     {
         return measure_patterns(trace_of(nodes, links),
-                                head_sections("", "sections", [](uint8_t) { return SectionGroup{}; }), space);
+                                head_sections("", "sections", [](uint8_t) { return SectionGroup{}; }), space, stated);
     }
 };
 
