@@ -40,8 +40,8 @@ struct FoundFrame {
 };
 /// Fits the axis around which the head is symmetrical (head_axis.h). If no abaxial veins lie around an axis, uses the
 /// principal axis of inertia whose moment differs most from the other two: of the florets if there are 12 or more,
-/// otherwise of all sections; if these are wider to one side, it is no axis: errors are large. A stated axis is taken as it is. Time is linear
-/// in the number of nodes.
+/// otherwise of all sections; if these are wider to one side, it is no axis, and the errors are large. A stated axis is
+/// taken as it is. Time is linear in the number of nodes.
 FoundFrame fit_frame(const VeinGraph& graph, const std::optional<StatedAxis>& stated = {});
 
 }  // namespace shvr
