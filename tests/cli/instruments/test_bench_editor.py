@@ -19,7 +19,7 @@ WORK = {"combine": (8, 8, 0), "threshold": (8, 8, 8), "grow": (16, 8, 0), "shrin
         "islands": (16, 8, 0), "fill_between": (72, 8, 0), "grow_seeds": (24, 8, 8), "lasso": (8, 8, 0),
         "trace_from_mask": (8, 0, 0), "mask_from_trace": (8, 8, 0), "surfaces": (12, 0, 0)}
 EVERY_DAY = ["islands", "fill_holes", "lasso", "mask_from_trace"]
-HAS_PEERS = subprocess.run(["/usr/bin/python3", "-c", "import scipy, skimage", vtk],
+HAS_PEERS = subprocess.run(["/usr/bin/python3", "-c", "import scipy, skimage, vtk"],
                            capture_output=True, check=False).returncode == 0
 
 
