@@ -19,7 +19,7 @@ constexpr ToolRow TOOL_ROWS[] = {
     {Tool::trace, "Trace", "tool_trace",
      "Click away from all nodes to add one, linked with the selected node. Click a node to select it, drag it to move "
      "it. The right button turns the volume.",
-     "add, pick or drag a node", "turn"},
+     "add / pick / drag", "turn"},
     {Tool::select, "Select", "tool_select",
      "Click a node or an internode to select it, twice for its whole segment; click paint to take its group, and empty "
      "space to deselect. The right button turns the volume.",
