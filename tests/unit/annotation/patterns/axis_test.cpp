@@ -119,10 +119,10 @@ TEST_CASE("the axis of a flat head is the normal of its plane, not a line in it,
         }
 }
 
-// Kind (Traces): nodes off the centre lines by up to 3 % of the head's radius, in heads of all heights
 // Of the heads of a test, every how many-th is measured; coprime to the numbers of species, widths and errors.
 const int EVERY = repeats(7, 1);
 
+// Kind (Traces): nodes off the centre lines by up to 3 % of the head's radius, in heads of all heights
 TEST_CASE("errors of a hand turn the axis by two degrees at most, however flat the head is")
 {
     const glm::dvec3 centre(50.0);
