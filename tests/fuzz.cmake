@@ -1,7 +1,7 @@
 # Hostile files: tests/fuzz/README.md.
 
 if(SHVR_IS_CHECKED)
-    file(GLOB fuzz_sources CONFIGURE_DEPENDS tests/fuzz/*.cpp tests/fuzz/remote/*.cpp)
+    file(GLOB fuzz_sources CONFIGURE_DEPENDS tests/fuzz/*.cpp tests/fuzz/looks/*.cpp tests/fuzz/remote/*.cpp)
     set(fuzz_names ${fuzz_sources})
     list(TRANSFORM fuzz_names REPLACE ".*/([^/]*)\\.cpp" "\\1")
 endif()
