@@ -56,6 +56,7 @@ MAY_INCLUDE = {
     "engine/session": "engine/base engine/touch engine/volume engine/look engine/annotation engine/annotation/files "
     "engine/annotation/trace engine/remote engine/formats engine/formats/zarr engine/projects",
     "engine/movie": "engine/base engine/look engine/session engine/tasks",
+    "engine/session/looks": "engine/base engine/session",
     "engine/session/words": "engine/base engine/annotation engine/session",
     "engine/jobs": "engine/base",
     "engine/pages": "engine/base",
