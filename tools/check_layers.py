@@ -102,10 +102,10 @@ MAY_INCLUDE = {
     "engine/workbench/document": "engine/base engine/remote engine/annotation/trace engine/annotation/work engine/session engine/session/words engine/jobs "
     "engine/movie engine/picture engine/live haptics engine/workbench/touch engine/workbench/models engine/workbench/actions "
     "engine/workbench/sight",
-    "engine/workbench/desk": "engine/base engine/session engine/jobs engine/workbench/touch engine/workbench/models "
+    "engine/workbench/desk": "engine/base engine/session engine/session/looks engine/jobs engine/workbench/touch engine/workbench/models "
     "engine/workbench/actions engine/workbench/lists engine/workbench/sight engine/workbench/bindings "
     "engine/workbench/document",
-    "engine/workbench/services": "engine/base engine/remote engine/look engine/movie engine/annotation/operations engine/annotation/work engine/session engine/session/words engine/tasks engine/live "
+    "engine/workbench/services": "engine/base engine/remote engine/look engine/movie engine/annotation/operations engine/annotation/work engine/session engine/session/looks engine/session/words engine/tasks engine/live "
     "engine/workbench/models engine/workbench/actions engine/workbench/lists engine/workbench/sight engine/workbench/edits "
     "engine/workbench/words engine/workbench/document engine/workbench/desk",
     "engine/workbench": "engine/base engine/workbench/actions engine/workbench/lists engine/workbench/desk "

@@ -37,6 +37,7 @@ std::optional<FileContent> content_of_json(const fs::path& path)
 {
     const JsonDocument document(read_text(path, MAX_JSON_BYTES), path.string());
     if (document.root()["shvr_session"].exists()) return FileContent::session;
+    if (document.root()["shvr_look"].exists()) return FileContent::transfer_function;
     if (document.root()["points"].exists() || document.root()["preset"].exists()) return FileContent::transfer_function;
     return std::nullopt;
 }

@@ -13,6 +13,7 @@ Workbench::Workbench(Renderer& renderer, WorkbenchOptions options) : desk_(rende
     desk_.apply = [this](const Action& action) { return apply(action); };
     desk_.model = [this] { return model(); };
     services_.presets.load();
+    services_.looks.load();
     services_.keeper.load();
 }
 
@@ -126,7 +127,8 @@ Model Workbench::model() const
             all.keeper.model(),
             all.presets.model(),
             all.window.model(),
-            {.recent = &recent_, .version = desk_.options.version}};
+            {.recent = &recent_, .version = desk_.options.version},
+            all.looks.model()};
 }
 
 }  // namespace shvr::ui

@@ -73,6 +73,7 @@ State state_of(const ui::Workbench& bench, const std::filesystem::path& folder)
     state["messages"] = sentence(model.shows_messages);
     state["passes"] = sentence(model.shows_passes, ' ', model.compared_passes != nullptr);
     for (const TransferPreset& preset : model.presets) state["presets"] += preset.is_own ? preset.name + ";" : "";
+    for (const NamedLook& look : model.looks) state["looks"] += look.name + ";";
     state["palette"] = sentence(model.shows_palette);
     state["preferences"] = sentence(model.shows_preferences);
     state["awaits_key"] = sentence(model.awaits_key);

@@ -13,15 +13,17 @@ PREPARED = {"copy_measurements": "measure", "clear_measurements": "measure", "me
             "select_segment": "line"}   # by methods of MenuWalk
 # Menus within menus, and what entries without a shortcut make: an action, or a dialog that is shown.
 INNER = {"Open recent", "Look from", "Kept views", "Panels", "Turn the view", "Move the view", "Distance blending",
-         "Cutting planes", "Clip planes", "Touch", "Group of the selection", "view 1", "Remove"}
+         "Cutting planes", "Clip planes", "Touch", "Looks", "Group of the selection", "view 1", "Remove"}
 EXPECTED = {
     "Copy the session": "copy_session", "Revert to the last save": "revert", "Shading": "set light.shaded",
-    "Show everything": "reset_cuts", "Go there": "look_from", "Remove this view": "forget_camera",
+    "Threshold into a group...": "show_dialog", "Show everything": "reset_cuts", "Go there": "look_from",
+    "Remove this view": "forget_camera",
 }
 BY_MENU = {"Look from": "look_from", "Panels": "prefer", "Group of the selection": "group"}   # from every entry
 # Entries that say something else than their action, since of their kind there is one for each group or brush.
 IN_PAINT = {"set probe.group", "set probe.brush"}
-NO_ENTRIES = {"Cutting planes": ["Visible range", "from ", "to ", "x", "y", "z"], "view 1": ["view 1", "Rename"]}
+NO_ENTRIES = {"Looks": ["None is saved yet", "Remove"], "view 1": ["view 1", "Rename"],
+              "Cutting planes": ["Visible range", "from ", "to ", "x", "y", "z"]}
 # They need a pointer over the picture, or stay grey for what they say when pointed at.
 WITH_THE_POINTER = {"pivot_at_pointer"}
 AT_LAST = {"quit", "quit_unsaved", "open_example"}
@@ -30,7 +32,8 @@ STAYS_OPEN = {"Turn the view", "Move the view", "Distance blending", "Clip plane
 AGAIN = {"full_screen", "side_panels", "tool_bar", "volume", "meshes", "guide", "let_go"}
 ESCAPED = {"help", "preferences", "messages", "palette", "passes", "open", "focus_panels", "focus_menu", "save_as",
            "open_with_options", "correct_spacing", "import_scan", "export_work", "label_parts", "compare",
-           "load_annotation", "operate", "figure", "movie"}
+           "load_annotation", "operate", "figure", "movie", "keep_look",
+           "Threshold into a group..."}
 
 
 class MenuWalk(Seen):
@@ -155,7 +158,7 @@ class MenuWalk(Seen):
                 self.check_choice(path, entry, wanted)
             else:
                 self.check_key(row["today"].split()[0], row["action"])
-        if name in ESCAPED:
+        if name in ESCAPED or entry in ESCAPED:
             self.see_frames()   # what is shown has the keys from the second frame on
             self.press("Escape")
             self.see_frames()

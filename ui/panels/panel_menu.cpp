@@ -164,6 +164,7 @@ void view_menu(const Model& model, Actions& actions)
         ImGui::EndMenu();
     }
     kept_views_menu(model, actions);
+    looks_menu(model, actions);
     const Arrangement arrangement = model.session.view.arrangement;
     shortcut_item("single_view", model, actions, arrangement == Arrangement::single);
     shortcut_item("stereo", model, actions, arrangement == Arrangement::stereo);
@@ -430,6 +431,7 @@ void menu_bar(const Model& model, Actions& actions)
     open_dialog(model, actions);
     name_and_take_dialogs(model, actions);
     task_dialogs(model, actions);
+    keep_look_dialog(model, actions);
     operations_window(model, actions);
 }
 

@@ -109,6 +109,9 @@ bool task_dialog_waits();
 void ask_to_import(const std::filesystem::path& volume, Actions& actions);
 /// Draws the window in which an operation on groups is chosen, previewed and carried out.
 void operations_window(const Model& model, Actions& actions);
+/// Draws the menu of looks, and the dialog that saves one.
+void looks_menu(const Model& model, Actions& actions);
+void keep_look_dialog(const Model& model, Actions& actions);
 /// Draws the dialogs for opening with options and for correcting the spacing.
 void load_dialogs(const Model& model, Actions& actions);
 void task_dialogs(const Model& model, Actions& actions);

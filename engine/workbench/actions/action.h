@@ -9,6 +9,7 @@
 
 #include "engine/workbench/actions/group_actions.h"
 #include "engine/workbench/actions/hand_actions.h"
+#include "engine/workbench/actions/look_actions.h"
 #include "engine/workbench/actions/looking_actions.h"
 #include "engine/workbench/actions/measuring_actions.h"
 #include "engine/workbench/actions/painting_actions.h"
@@ -32,11 +33,12 @@ struct JoinedRows<std::tuple<Joined...>, std::tuple<Rows...>, Tables...>
 /// A tuple of the rows of all the tables above, in the order in which actions are listed to users.
 using ActionRows =
     JoinedRows<std::tuple<>, std::remove_const_t<decltype(LOOKING_ACTIONS)>,
-               std::remove_const_t<decltype(SETTINGS_ACTIONS)>, std::remove_const_t<decltype(PROBE_ACTIONS)>,
-               std::remove_const_t<decltype(PAINTING_ACTIONS)>, std::remove_const_t<decltype(GROUP_ACTIONS)>,
-               std::remove_const_t<decltype(TRACING_ACTIONS)>, std::remove_const_t<decltype(MEASURING_ACTIONS)>,
-               std::remove_const_t<decltype(WORK_ACTIONS)>, std::remove_const_t<decltype(PICTURE_ACTIONS)>,
-               std::remove_const_t<decltype(WINDOW_ACTIONS)>, std::remove_const_t<decltype(HAND_ACTIONS)>>::Type;
+               std::remove_const_t<decltype(SETTINGS_ACTIONS)>, std::remove_const_t<decltype(LOOK_ACTIONS)>,
+               std::remove_const_t<decltype(PROBE_ACTIONS)>, std::remove_const_t<decltype(PAINTING_ACTIONS)>,
+               std::remove_const_t<decltype(GROUP_ACTIONS)>, std::remove_const_t<decltype(TRACING_ACTIONS)>,
+               std::remove_const_t<decltype(MEASURING_ACTIONS)>, std::remove_const_t<decltype(WORK_ACTIONS)>,
+               std::remove_const_t<decltype(PICTURE_ACTIONS)>, std::remove_const_t<decltype(WINDOW_ACTIONS)>,
+               std::remove_const_t<decltype(HAND_ACTIONS)>>::Type;
 
 /// Whether one of the tables has a row for the struct `Kind`.
 template <class Kind, class Rows = ActionRows>

@@ -15,8 +15,8 @@ namespace shvr::ui {
 namespace {
 
 constexpr ActionRows TABLE =
-    std::tuple_cat(LOOKING_ACTIONS, SETTINGS_ACTIONS, PROBE_ACTIONS, PAINTING_ACTIONS, GROUP_ACTIONS, TRACING_ACTIONS,
-                   MEASURING_ACTIONS, WORK_ACTIONS, PICTURE_ACTIONS, WINDOW_ACTIONS, HAND_ACTIONS);
+    std::tuple_cat(LOOKING_ACTIONS, SETTINGS_ACTIONS, LOOK_ACTIONS, PROBE_ACTIONS, PAINTING_ACTIONS, GROUP_ACTIONS,
+                   TRACING_ACTIONS, MEASURING_ACTIONS, WORK_ACTIONS, PICTURE_ACTIONS, WINDOW_ACTIONS, HAND_ACTIONS);
 
 constexpr auto ROWS =
     std::apply([](const auto&... rows) { return std::array{static_cast<const ActionRow&>(rows)...}; }, TABLE);

@@ -86,6 +86,9 @@ void add_listed(std::vector<PaletteEntry>& entries, const Model& model, std::str
         functions.add(preset.name, "Transfer function: preset", edited(model.session, [&](Session& s) {
                           s.transfer_function = transfer_function_of(preset, model.statistics);
                       }));
+    Listing looks(entries, model, text);
+    for (const NamedLook& look : model.looks)
+        looks.add("Look " + look.name, "Looks: groups, light and transfer function", TakeLook{look.name});
     add_node(entries, model, text);
 }
 

@@ -356,6 +356,7 @@ constexpr Shortcut SHORTCUTS[] = {
          toggle_drawn<&InteractionSettings::screenshot_marks>, ""),
     both("figure", WORK_KEYS, "Figure...", Mode::tap, show_dialog<Dialog::figure>, ""),
     both("movie", WORK_KEYS, "Movie...", Mode::tap, show_dialog<Dialog::movie>, ""),
+    both("keep_look", WORK_KEYS, "Save the look...", Mode::tap, show_dialog<Dialog::keep_look>, ""),
     both("update_occlusion", WORK_KEYS, "Update ambient occlusion", Mode::tap, plain<UpdateOcclusion>, "F8"),
     {"help",
      WORK_KEYS,

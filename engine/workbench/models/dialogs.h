@@ -20,6 +20,7 @@ enum class Dialog : uint8_t {
     compare,
     figure,
     movie,
+    keep_look,
     operation  ///< a window: the picture can be turned while it is shown
 };
 inline constexpr Spelling<Dialog> DIALOGS[] = {
@@ -28,7 +29,8 @@ inline constexpr Spelling<Dialog> DIALOGS[] = {
     {Dialog::spacing, "spacing"},    {Dialog::import_scan, "import"},
     {Dialog::export_work, "export"}, {Dialog::label, "label"},
     {Dialog::compare, "compare"},    {Dialog::operation, "operation"},
-    {Dialog::figure, "figure"},      {Dialog::movie, "movie"}};
+    {Dialog::figure, "figure"},      {Dialog::movie, "movie"},
+    {Dialog::keep_look, "keep_look"}};
 constexpr std::span<const Spelling<Dialog>> spellings_of(Dialog)
 {
     return DIALOGS;
@@ -39,7 +41,7 @@ constexpr bool needs_document(Dialog dialog)
 {
     return dialog == Dialog::load || dialog == Dialog::save_as || dialog == Dialog::spacing ||
            dialog == Dialog::export_work || dialog == Dialog::label || dialog == Dialog::operation ||
-           dialog == Dialog::figure || dialog == Dialog::movie;
+           dialog == Dialog::figure || dialog == Dialog::movie || dialog == Dialog::keep_look;
 }
 
 }  // namespace shvr::ui

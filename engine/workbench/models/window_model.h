@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "engine/session/looks/named_look.h"
 #include "engine/session/transfer_presets.h"
 #include "engine/workbench/models/dialogs.h"
 
@@ -27,6 +29,11 @@ struct PreferenceModel {
 /// Made by the shelf of presets.
 struct PresetModel {
     const std::vector<TransferPreset>& presets;
+};
+
+/// Made by the shelf of looks.
+struct LookModel {
+    std::span<const NamedLook> looks{};  ///< those that the user saved, by name
 };
 
 /// Made by the state of the window.

@@ -11,6 +11,7 @@
 #include "engine/remote/address.h"
 #include "engine/session/label_looks.h"
 #include "engine/session/lasting_settings.h"
+#include "engine/session/looks/named_look.h"
 #include "engine/session/session_patch.h"
 #include "engine/workbench/words/load_words.h"
 
@@ -396,7 +397,9 @@ void FileTaker::show_preview(std::shared_ptr<const ReadFile> read)
         preview.notes.insert(preview.notes.end(), read->notes.remarks.begin(), read->notes.remarks.end());
         if (read->looks != read->groups) preview.notes.emplace_back("its names and colours of groups are taken, too");
     } else {
-        preview.changes = "The transfer function would be replaced.";
+        preview.changes = is_look(read->text, read->path.string())
+                              ? "Names and colours of groups, the light and the transfer function would be replaced."
+                              : "The transfer function would be replaced.";
     }
     preview_ = std::move(preview);
     preview_opening_ = read->opening;
@@ -415,6 +418,12 @@ void FileTaker::show_next_preview()
 
 void FileTaker::load_transfer_function(const ReadFile& read)
 {
+    if (is_look(read.text, read.path.string())) {
+        const NamedLook look = parse_look(read.text, read.path.stem().string(), read.path.string());
+        others_.take_session(with_look(document_->session, look, document_->statistics));
+        others_.record_settings();
+        return say("Loaded the look of " + read.path.string() + "; undo takes it back");
+    }
     if (is_preset(read.text, read.path)) {
         Session after = document_->session;
         const TransferPreset preset = parse_transfer_preset(read.text, read.path.stem().string(), read.path.string());

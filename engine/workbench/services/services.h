@@ -4,6 +4,7 @@
 
 #include <tuple>
 
+#include "engine/workbench/desk/look_shelf.h"
 #include "engine/workbench/desk/preference_keeper.h"
 #include "engine/workbench/desk/preset_shelf.h"
 #include "engine/workbench/desk/window_state.h"
@@ -30,6 +31,9 @@ struct Services {
     Desk& desk;
     PreferenceKeeper keeper{desk};
     PresetShelf presets{desk};
+    LookShelf looks{desk,
+                    {.take_session = [this](Session session) { settings.take_session(std::move(session)); },
+                     .record_settings = [this] { settings.record_settings(); }}};
     WindowState window{desk, keeper};
     Photographer photographer{desk, {.pixels = [this] { return viewer.pixels(); }}};
     Viewer viewer{desk,
@@ -161,7 +165,7 @@ struct Services {
     template <class Kind>
     Kind& of()
     {
-        return std::get<Kind&>(std::tie(keeper, presets, window, photographer, viewer, settings, reader, painter,
+        return std::get<Kind&>(std::tie(keeper, presets, looks, window, photographer, viewer, settings, reader, painter,
                                         prober, groups, tracer, taker, opener, reloader, tasks, saver, hand));
     }
 };

@@ -8,7 +8,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
 {
     using namespace shvr;
     using namespace shvr::fuzz;
-    const std::string text(text_of({data, size}));
+    const std::string text(reinterpret_cast<const char*>(data), size);
     passes([&] { static_cast<void>(is_look(text, "look")); });
     NamedLook look;
     if (!accepts([&] { look = parse_look(text, "look", "look"); })) return 0;
