@@ -44,6 +44,7 @@ gpu::Budget budget_of(const AppOptions& options)
 
 App::App(const AppOptions& options) : options_(options), window_("SHVR", options.window_size)
 {
+    begin_at_kept_place();
     gpu::DeviceOptions device = window_.device_needs();
     device.device = options.device;
     device.validation = options.validation;
@@ -87,6 +88,7 @@ void App::run()
             restart_device(error.what());
         }
     }
+    keep_place();
     bench_->wait_for_screenshots();
 }
 
@@ -193,8 +195,7 @@ bool App::refuses_to_close(const std::string& why)
 {
     const Document& document = bench_->document();
     const bool is_kept = document.work_is_saved() || document.annotator.work().is_kept();
-    if (is_kept && was_asked_to_close_) return false;
-    was_asked_to_close_ = true;
+    if (std::exchange(was_asked_to_close_, true) && is_kept) return false;
     bench_->note_kept_open(why);
     bench_->say("The window stays open, since not all could be saved: " + why +
                     (document.work_is_saved() ? "; close it again to leave without saving"

@@ -35,6 +35,7 @@ struct AppOptions {
     std::filesystem::path screen_texts{};     ///< file that gets each frame's texts (screen_text.h); empty: none
     std::string version{};                    ///< version of the program, for reports
     glm::uvec2 window_size{1280, 800};
+    bool keeps_place = true;  ///< the window begins where it was last, and its place is kept when it is closed
 };
 
 class App {
@@ -75,6 +76,8 @@ private:
     void hold_back(std::vector<InputEvent>& events, size_t first);
     bool decides(const InputEvent& event, bool is_for_ui) const;
     bool closes();
+    void begin_at_kept_place();
+    void keep_place();
     bool refuses_to_close(const std::string& why);
 
     AppOptions options_;

@@ -5,6 +5,7 @@
 #include <imgui/imgui.h>
 #include <imgui/imgui_internal.h>
 
+#include "engine/workbench/bindings/preferences_file.h"
 #include "engine/workbench/models/preferences.h"
 #include "ui/app.h"
 #include "ui/panels/field_keys.h"
@@ -57,6 +58,30 @@ void App::follow_appearance()
     set_style(appearance_);
     window_.renew_fonts();
     keep_drawing(0.5);  // while panels settle into their new places
+}
+
+/// Puts the window where it was when it was closed last. The workbench reports preferences that are not valid.
+void App::begin_at_kept_place()
+{
+    if (!options_.keeps_place) return;
+    try {
+        const Preferences preferences = load_preferences(preferences_file(options_.settings_folder));
+        const auto kept = preferences.layout.windows.find(MAIN_WINDOW);
+        if (kept == preferences.layout.windows.end() || !kept->second.at || !kept->second.size) return;
+        window_.put({glm::ivec2(*kept->second.at), glm::ivec2(*kept->second.size)});
+    } catch (const Error&) {
+    }
+}
+
+void App::keep_place()
+{
+    if (!options_.keeps_place) return;
+    const Window::Place now = window_.place();
+    const glm::dvec2 at(now.at), size(now.size);
+    const auto& windows = bench_->model().preferences.layout.windows;
+    const auto kept = windows.find(MAIN_WINDOW);
+    if (kept != windows.end() && kept->second == WindowPlace{at, size}) return;
+    static_cast<void>(bench_->apply(Prefer{patch_of_window(MAIN_WINDOW, at, size)}));
 }
 
 /// Call after panels or the menu were used by keyboard; otherwise, the framed item would react to the next Space key.

@@ -248,6 +248,31 @@ double Window::content_scale() const
     return double(x);
 }
 
+Window::Place Window::place() const
+{
+    if (glfwGetWindowMonitor(input_->window)) return {input_->place, input_->size};
+    Place place;
+    glfwGetWindowPos(input_->window, &place.at.x, &place.at.y);
+    glfwGetWindowSize(input_->window, &place.size.x, &place.size.y);
+    return place;
+}
+
+void Window::put(const Place& place)
+{
+    int count = 0;
+    GLFWmonitor** const monitors = glfwGetMonitors(&count);
+    const glm::ivec2 handle = place.at + glm::ivec2(place.size.x / 2, 1);  // what a person drags
+    for (int i = 0; i < count; ++i) {
+        glm::ivec2 at(0), size(0);
+        glfwGetMonitorWorkarea(monitors[i], &at.x, &at.y, &size.x, &size.y);
+        if (glm::any(glm::lessThan(handle, at)) || glm::any(glm::greaterThanEqual(handle, at + size))) continue;
+        const glm::ivec2 fitting = glm::min(place.size, size);
+        glfwSetWindowSize(input_->window, fitting.x, fitting.y);
+        return glfwSetWindowPos(input_->window, place.at.x, place.at.y);
+    }
+    glfwSetWindowSize(input_->window, place.size.x, place.size.y);
+}
+
 void Window::set_full_screen(bool is_full)
 {
     GLFWwindow* const window = input_->window;

@@ -83,6 +83,15 @@ public:
     glm::uvec2 pixels() const;
     double content_scale() const;  ///< 2 on a HiDPI screen; changes when the window moves to another screen
     double now_s() const;
+    /// Position and size on the screen, in its units. Some window systems tell and take no position.
+    struct Place {
+        glm::ivec2 at{0}, size{0};
+        bool operator==(const Place&) const = default;
+    };
+    /// Returns the place of the window or, while it covers the whole screen, the place that it had before.
+    Place place() const;
+    /// Puts the window there if its title bar would be within a screen; otherwise only sets its size.
+    void put(const Place& place);
     /// Covers the whole screen that shows the window, or restores the window.
     void set_full_screen(bool is_full);
 

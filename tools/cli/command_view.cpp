@@ -91,6 +91,7 @@ void run_view(const ViewCommandOptions& options)
                           .log = options.log,
                           .screen_texts = screen_texts ? screen_texts : "",
                           .version = SHVR_VERSION};
+    wanted.keeps_place = options.size.empty();
     if (!options.size.empty()) wanted.window_size = parse_size(options.size);
     constexpr std::chrono::milliseconds MOST{700};  // systems kill a process after a second; it must end before that
     const StopRequest stop;
@@ -119,7 +120,8 @@ void add_view(CLI::App& program)
     command->add_option(
         "INPUT", options->input,
         "Session (.json), project folder, volume or the address of an OME-Zarr; none: drop one onto it");
-    command->add_option("--size", options->size, "Size of the window, as in 1280x800");
+    command->add_option("--size", options->size,
+                        "Size of the window, as in 1280x800; without it, size and place of the last time");
     command->add_flag("--allow-force", options->allow_force,
                       "Let a haptic device put force on the hand; one on HID only with a verified profile");
     command->add_option("--log", options->log, "Write each action as a line that shvr annotate replays");

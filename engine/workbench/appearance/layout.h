@@ -43,12 +43,14 @@ struct PanelLayout {
     bool operator==(const PanelLayout&) const = default;
 };
 
-/// Last position and size of a window such as help or messages.
+/// Last position and size of a window such as help or messages; those of the program's own window ("main") are in the
+/// screen's units.
 struct WindowPlace {
     std::optional<glm::dvec2> at, size;
     bool operator==(const WindowPlace&) const = default;
 };
-inline constexpr const char* WINDOW_IDS[] = {"help", "messages", "passes"};
+inline constexpr const char* MAIN_WINDOW = "main";
+inline constexpr const char* WINDOW_IDS[] = {MAIN_WINDOW, "help", "messages", "passes"};
 
 inline constexpr double SIDE_WIDTH = 25.0, MIN_SIDE_WIDTH = 17.0;
 inline constexpr double MAX_SIDE_SHARE = 0.5;  ///< share of the window's width

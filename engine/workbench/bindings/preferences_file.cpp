@@ -88,7 +88,8 @@ void fields(Fields& f, WindowLayout& layout)
     f.entries("windows", ids, "ID", [&](Fields& entry, const std::string& id) { fields(entry, layout.windows[id]); },
               {});
     for (const auto& [id, window] : layout.windows)
-        f.check("windows." + id, std::ranges::find(WINDOW_IDS, id) != std::end(WINDOW_IDS), "help, messages or passes");
+        f.check("windows." + id, std::ranges::find(WINDOW_IDS, id) != std::end(WINDOW_IDS),
+                "main, help, messages or passes");
     f.number("side_width", layout.side_width, NumberRange{MIN_SIDE_WIDTH, 1000.0}, {});
     f.flag("shows_side", layout.shows_side, {});
     f.flag("shows_tool_bar", layout.shows_tool_bar, {});

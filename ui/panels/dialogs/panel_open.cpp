@@ -121,13 +121,20 @@ void open_dialog(const Model& model, Actions& actions)
 {
     static bool was_asked = false;
     if (model.asks_what_to_open && !std::exchange(was_asked, true)) {
-        // At first, the dialog starts in the folder of the last opened file; later, in the folder where it was left.
+        // At first, the dialog starts in the folder of the last opened file or, without one, in the working folder;
+        // later, in the folder where it was left.
         static bool was_shown = false;
         const auto& recent = model.preferences.recent;
         const auto is_here = [](const std::filesystem::path& path) { return !is_typed_address(path.string()); };
         const auto last = std::ranges::find_if(recent, is_here);
-        const std::filesystem::path begin =
-            std::exchange(was_shown, true) || last == recent.end() ? std::filesystem::path() : last->parent_path();
+        std::error_code ignored;
+        std::filesystem::path begin = std::filesystem::current_path(ignored);
+        if (std::exchange(was_shown, true))
+            begin.clear();
+        else if (last != recent.end())
+            begin = last->parent_path();
+        else if (!begin.has_relative_path())
+            begin.clear();  // started from a desktop, not in a folder that a person chose
         opening.ask(begin, places_of(model));
     }
     if (!model.asks_what_to_open && std::exchange(was_asked, false) && opening.is_open()) opening.close();
