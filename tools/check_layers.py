@@ -111,18 +111,19 @@ MAY_INCLUDE = {
     "engine/workbench": "engine/base engine/workbench/actions engine/workbench/lists engine/workbench/desk "
     "engine/workbench/services",
     "ui/files": "engine/base engine/remote engine/formats",
-    "ui/panels": "engine/base engine/session engine/session/words engine/workbench/appearance engine/workbench/curves engine/workbench/models "
+    "ui/thumbnails": "engine/base engine/workbench/models ui/files",
+    "ui/panels": "ui/thumbnails engine/base engine/session engine/session/words engine/workbench/appearance engine/workbench/curves engine/workbench/models "
     "engine/workbench/actions engine/workbench/lists engine/workbench/sight engine/workbench/edits "
     "engine/workbench/bindings",
     "ui/panels/look": "engine/session engine/workbench/curves engine/workbench/models engine/workbench/actions "
     "engine/workbench/edits engine/workbench/bindings ui/panels",
     "ui/panels/banners": "engine/base engine/workbench/models engine/workbench/actions ui/panels",
     "ui/panels/dialogs": "engine/base engine/session engine/workbench/models engine/workbench/actions "
-    "engine/workbench/lists engine/workbench/bindings engine/workbench/forms engine/tasks ui/files ui/panels",
+    "engine/workbench/lists engine/workbench/forms engine/tasks ui/files ui/thumbnails ui/panels",
     "ui/panels/touch": "engine/workbench/models engine/workbench/lists engine/workbench/edits engine/workbench/bindings "
     "engine/workbench/words ui/panels",
     "ui": "engine/base engine/gpu engine/live haptics engine/workbench engine/workbench/models engine/workbench/sight "
-    "engine/workbench/edits engine/workbench/bindings ui/files ui/panels",
+    "engine/workbench/edits engine/workbench/bindings ui/files ui/thumbnails ui/panels",
     "tests": "*",
     "tests/reference": "engine/annotation engine/annotation/operations engine/annotation/trace",
     "tools/report": "engine/base engine/pages",

@@ -9,6 +9,7 @@
 #include "engine/workbench/models/preferences.h"
 #include "ui/app.h"
 #include "ui/panels/field_keys.h"
+#include "ui/thumbnails/thumbnails.h"
 
 namespace shvr::ui {
 
@@ -63,6 +64,7 @@ void App::follow_appearance()
 /// Puts the window where it was when it was closed last. The workbench reports preferences that are not valid.
 void App::begin_at_kept_place()
 {
+    if (!options_.settings_folder.empty()) set_thumbnail_folder(options_.settings_folder / "pictures");
     if (!options_.keeps_place) return;
     try {
         const Preferences preferences = load_preferences(preferences_file(options_.settings_folder));

@@ -9,6 +9,7 @@
 #include "engine/workbench/appearance/glyphs.h"
 #include "ui/panels/font_files.h"
 #include "ui/panels/style.h"
+#include "ui/thumbnails/thumbnails.h"
 
 namespace shvr::ui {
 
@@ -131,6 +132,7 @@ void load_fonts(double pixels)
     atlas.Clear();
     glyph_ranges = ranges_of(known_glyphs);
     fill(atlas, pixels, For::screen, known_glyphs, glyph_ranges);
+    build_with_thumbnails(atlas);
     is_atlas_stale = false;
 }
 
@@ -162,7 +164,7 @@ void want_typed_glyphs()
 
 bool fonts_are_stale()
 {
-    return is_atlas_stale;
+    return is_atlas_stale || thumbnails_are_stale();
 }
 
 }  // namespace shvr::ui

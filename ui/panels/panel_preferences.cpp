@@ -4,7 +4,6 @@
 
 #include <imgui/imgui.h>
 
-#include "engine/workbench/bindings/hints.h"
 #include "engine/workbench/models/preferences.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
@@ -135,28 +134,6 @@ void preferences_window(const Model& model, Actions& actions)
     }
     ImGui::End();
     if (!is_open) actions.push_back(ShowPreferences{false});
-}
-
-// ---- At the first start
-
-void first_hints(const Model& model, const ImVec2& top_middle, Actions& actions)
-{
-    const int number = model.preferences.hints_seen;
-    if (number >= FIRST_HINTS || model.shows_help || model.shows_palette || model.shows_preferences) return;
-    const float font = ImGui::GetFontSize();
-    ImGui::SetNextWindowPos({top_middle.x, top_middle.y + font}, ImGuiCond_Always, {0.5f, 0.0f});
-    ImGui::SetNextWindowSize({std::min(36.0f * font, 1.8f * top_middle.x), 0.0f});
-    ImGui::Begin("First hints", nullptr,
-                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                     ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);
-    ImGui::TextWrapped("%s", first_hint(number, model.keymap).c_str());
-    const bool is_last = number + 1 == FIRST_HINTS;
-    if (ImGui::Button(is_last ? "Done" : "Next hint")) prefer(actions, sentence("\"hints_seen\":", number + 1));
-    ImGui::SameLine();
-    if (!is_last && ImGui::Button("No more hints")) prefer(actions, sentence("\"hints_seen\":", FIRST_HINTS));
-    ImGui::SameLine();
-    ImGui::TextDisabled("%d of %d", number + 1, FIRST_HINTS);
-    ImGui::End();
 }
 
 }  // namespace shvr::ui

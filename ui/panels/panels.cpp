@@ -268,11 +268,9 @@ Layout draw_panels(const Model& model, const glm::uvec2& window, Actions& action
     else
         start_page(model, actions);
     status_bar(model, window, actions);
-    const float banners = std::min(notices(model, {0.0f, top}, size.x - side, actions), 0.5f * height);
-    // Notices take precedence over hints, which are drawn at the same position.
-    const bool has_notice =
-        !model.holder.empty() || !model.outside.empty() || !model.recovered.empty() || !model.trouble.empty();
-    if (model.is_open && !has_notice) first_hints(model, {0.5f * (size.x - side), top}, actions);
+    float banners = notices(model, {0.0f, top}, size.x - side, actions);
+    if (model.is_open) banners += first_hints(model, {0.0f, top + banners}, size.x - side, actions);
+    banners = std::min(banners, 0.5f * height);
     if (model.shows_help) help_window(model, actions);
     if (model.shows_preferences) preferences_window(model, actions);
     if (model.shows_palette) palette_window(model, actions);

@@ -35,7 +35,7 @@ std::vector<TextImage> draw_texts(std::span<const std::string> texts, double pix
 void want_glyphs(std::string_view text);
 /// Requests the characters typed since the last frame.
 void want_typed_glyphs();
-/// Returns whether requested characters are missing from the atlas, in which case set_style has to be called.
+/// Returns whether the atlas lacks requested characters or pictures (ui/thumbnails): then call set_style.
 bool fonts_are_stale();
 
 /// Returns a colour of the present theme, in the format of Dear ImGui.

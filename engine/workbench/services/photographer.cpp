@@ -10,6 +10,7 @@
 #include "engine/session/words/number_words.h"
 #include "engine/workbench/desk/declined.h"
 #include "engine/workbench/lists/group_list.h"
+#include "engine/workbench/models/preferences.h"
 #include "engine/workbench/sight/print_size.h"
 
 namespace shvr::ui {
@@ -58,7 +59,23 @@ Photographer::Photographer(Desk& desk, Others others) : Service(desk), others_(s
 
 void Photographer::advance()
 {
-    attempt(photographing_, [this] { follow_screenshots(); });
+    attempt(photographing_, [this] {
+        follow_screenshots();
+        follow_project_picture();
+    });
+}
+
+/// Takes the picture of the start page once the view is sharp.
+void Photographer::follow_project_picture()
+{
+    if (options_.is_script || options_.settings.empty() || !options_.has_preferences) return;
+    if (!project_pictures_.is_wanted(desk_.openings, document_->is_saved())) return;
+    const std::vector<Screen::Part>& parts = document_->screen.parts();
+    if (parts.empty() || !parts.front().view->shown_camera()) return;  // nothing is drawn yet
+    if (!document_->screen.complete() || screenshots_.has_large() || document_->annotator.stroke_is_running()) return;
+    const std::vector<std::filesystem::path> recent = model().preferences.recent;
+    if (!recent.empty())
+        project_pictures_.take(desk_.openings, document_->screen, options_.settings / "pictures", recent);
 }
 
 void Photographer::drop_large(const char* by)

@@ -3,6 +3,7 @@
 // are.
 
 #include "engine/workbench/desk/service.h"
+#include "engine/workbench/document/project_pictures.h"
 #include "engine/workbench/document/screenshots.h"
 #include "engine/workbench/sight/figure_elements.h"
 
@@ -38,6 +39,7 @@ public:
 
 private:
     void follow_screenshots();
+    void follow_project_picture();
     glm::uvec2 pixels_of(const glm::ivec2& asked) const;
     Session session_of_pictures(const glm::uvec2& pixels) const;
     Figure drawn_elements(const FigureElements& elements, const Session& session, const Camera& camera,
@@ -48,6 +50,7 @@ private:
 
     const Others others_;
     Screenshots screenshots_;
+    ProjectPictures project_pictures_;
     double units_ = 1.0;
     bool is_still_ = true;
     Attempt photographing_;
