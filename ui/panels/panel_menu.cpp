@@ -97,6 +97,7 @@ void edit_menu(const Model& model, Actions& actions)
     shortcut_item("undo", model, actions);
     shortcut_item("redo", model, actions);
     ImGui::Separator();
+    threshold_item(model, actions);
     shortcut_item("operate", model, actions);
     ImGui::Separator();
     shortcut_item("preferences", model, actions, model.shows_preferences);

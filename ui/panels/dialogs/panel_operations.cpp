@@ -161,6 +161,17 @@ void follow_preview(const Model& model, const std::string& line, bool is_possibl
 
 }  // namespace
 
+void threshold_item(const Model& model, Actions& actions)
+{
+    const std::string why = why_not(model, ShowDialog{Dialog::operation});
+    if (ImGui::MenuItem("Threshold into a group...", nullptr, false, why.empty())) {
+        state.chosen = GroupOperation(ThresholdOp()).index();
+        actions.push_back(ShowDialog{Dialog::operation});
+    }
+    hint(why.empty() ? "All voxels of a range of intensities, in the whole scan or a box; previewed in the picture."
+                     : why.c_str());
+}
+
 void operations_window(const Model& model, Actions& actions)
 {
     if (model.dialog != Dialog::operation || !model.is_open) {
