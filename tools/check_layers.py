@@ -85,6 +85,7 @@ MAY_INCLUDE = {
     "engine/workbench/touch": "engine/base engine/look engine/annotation/trace engine/annotation/work engine/session "
     "engine/live haptics haptics/devices",
     "engine/workbench/models": "engine/base engine/remote engine/volume engine/annotation engine/annotation/work engine/session "
+    "engine/session/looks engine/tasks "
     "engine/jobs engine/live haptics haptics/devices engine/workbench/appearance engine/workbench/touch",
     "engine/workbench/actions": "engine/base engine/remote engine/annotation/operations engine/annotation/script engine/session engine/tasks engine/workbench/models",
     "engine/workbench/lists": "engine/base engine/look engine/annotation/trace engine/session engine/live "
@@ -117,7 +118,8 @@ MAY_INCLUDE = {
     "engine/workbench/bindings",
     "ui/panels/look": "engine/session engine/workbench/curves engine/workbench/models engine/workbench/actions "
     "engine/workbench/edits engine/workbench/bindings ui/panels",
-    "ui/panels/banners": "engine/base engine/workbench/models engine/workbench/actions ui/panels",
+    "ui/panels/start": "engine/base engine/remote engine/workbench/models engine/workbench/bindings ui/files ui/thumbnails ui/panels",
+    "ui/panels/banners": "engine/base engine/workbench/models engine/workbench/actions engine/workbench/forms ui/panels",
     "ui/panels/dialogs": "engine/base engine/session engine/workbench/models engine/workbench/actions "
     "engine/workbench/lists engine/workbench/forms engine/tasks ui/files ui/thumbnails ui/panels",
     "ui/panels/touch": "engine/workbench/models engine/workbench/lists engine/workbench/edits engine/workbench/bindings "

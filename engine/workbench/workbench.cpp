@@ -15,6 +15,7 @@ Workbench::Workbench(Renderer& renderer, WorkbenchOptions options) : desk_(rende
     services_.presets.load();
     services_.looks.load();
     services_.keeper.load();
+    services_.tasks.look_for_unfinished();
 }
 
 /// Finishes writing files, including the preferences.

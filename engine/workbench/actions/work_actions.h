@@ -112,6 +112,20 @@ struct WorkOnCopy {
     std::filesystem::path path;  ///< session file of the copy; empty: an unused name next to the open session
 };
 
+/// What becomes of an import that was cancelled or interrupted (Model::unfinished).
+enum class UnfinishedUse { resume, remove, keep };
+inline constexpr Spelling<UnfinishedUse> UNFINISHED_USES[] = {
+    {UnfinishedUse::resume, "resume"}, {UnfinishedUse::remove, "delete"}, {UnfinishedUse::keep, "keep"}};
+constexpr std::span<const Spelling<UnfinishedUse>> spellings_of(UnfinishedUse)
+{
+    return UNFINISHED_USES;
+}
+
+/// Goes on with the unfinished import, deletes what it has left, or keeps that and mentions it no more.
+struct SettleImport {
+    UnfinishedUse use = UnfinishedUse::keep;
+};
+
 /// Opens a copy, owned by the user, of the example that ships.
 struct OpenExample {};
 
@@ -272,6 +286,13 @@ inline constexpr auto WORK_ACTIONS = std::tuple{
             return action.path.empty() && !model.remote.empty()
                        ? "the scan is on another machine; expected path, the session file to make on this one"
                        : "";
+        }),
+    row<SettleImport, TaskRunner>(
+        {"settle_import", "Unfinished import", WORK_GROUP,
+         "goes on with an import that was cancelled or interrupted, or deletes what it has left", Needs::nothing},
+        [](auto& f, SettleImport& a) { f.choice("use", a.use, {.is_required = true}); },
+        [](const auto& model, const SettleImport&) -> std::string {
+            return model.unfinished ? "" : "no import was cancelled or interrupted";
         }),
     row<OpenExample, FileTaker>({"open_example", "Open the example", WORK_GROUP,
                                  "opens the supplied example, in a copy of your own", Needs::nothing})};

@@ -11,6 +11,7 @@
 #include "engine/annotation/work/saved_files.h"
 #include "engine/jobs/jobs.h"
 #include "engine/session/choices.h"
+#include "engine/tasks/unfinished_import.h"
 #include "engine/volume/volume.h"
 
 namespace shvr::ui {
@@ -72,7 +73,8 @@ struct CandidateModel {
 
 /// Made by the runner of tasks.
 struct JobModel {
-    std::vector<Jobs::State> jobs{};  ///< jobs, the running one first
+    std::vector<Jobs::State> jobs{};               ///< jobs, the running one first
+    const UnfinishedImport* unfinished = nullptr;  ///< what an import has left that ended early; null: nothing known
 };
 
 }  // namespace shvr::ui

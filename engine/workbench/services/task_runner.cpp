@@ -2,7 +2,10 @@
 
 #include <algorithm>
 
+#include "engine/base/atomic_file.h"
+#include "engine/base/file.h"
 #include "engine/remote/address.h"
+#include "engine/workbench/actions/action_rows.h"
 #include "engine/workbench/words/task_words.h"
 
 namespace shvr::ui {
@@ -14,6 +17,36 @@ std::string joined(const std::vector<std::string>& texts, const char* between)
     std::string text;
     for (const std::string& each : texts) text += (text.empty() ? "" : between) + each;
     return text;
+}
+
+void write_note(const std::filesystem::path& note, const std::string& line)
+{
+    if (note.empty()) return;
+    std::error_code ignored;
+    std::filesystem::create_directories(note.parent_path(), ignored);
+    try {
+        write_file_atomically(note, std::as_bytes(std::span(line)));
+    } catch (const Error&) {  // the import matters more
+    }
+}
+
+void remove_note(const std::filesystem::path& note)
+{
+    std::error_code ignored;
+    if (!note.empty()) std::filesystem::remove(note, ignored);
+}
+
+/// Returns the import that a note names; null: there is no note, or none that this version understands.
+std::optional<ImportTask> import_in(const std::filesystem::path& note)
+{
+    try {
+        if (!is_there(note)) return std::nullopt;
+        const Action action = read_action(read_text(note, int64_t{1} << 16), note.string());
+        const ImportTask* const task = action.as<ImportTask>();
+        return task ? std::optional(*task) : std::nullopt;
+    } catch (const Error&) {
+        return std::nullopt;
+    }
 }
 
 }  // namespace
@@ -29,6 +62,10 @@ void TaskRunner::advance()
         const auto writer = writers_.find(job.number);
         const std::string kept = writer == writers_.end() || writer->second->empty() ? "" : "; " + *writer->second;
         if (writer != writers_.end()) writers_.erase(writer);
+        if (const auto import = imports_.find(job.number); import != imports_.end()) {
+            if (job.was_cancelled || !job.failure.empty()) look_at_part(import->second);
+            imports_.erase(import);
+        }
         if (others_.end_reading(job)) continue;
         if (job.was_cancelled)
             say("Cancelled: " + job.what + kept, kept.empty() ? Weight::done : Weight::warning);
@@ -39,7 +76,7 @@ void TaskRunner::advance()
 
 /// Starts a job that writes files. If cancelled, the job notes which files are left, such as an unfinished import.
 template <class Work>
-void TaskRunner::start_writing(const std::string& what, Work work)
+Jobs::Number TaskRunner::start_writing(const std::string& what, Work work)
 {
     const auto kept = std::make_shared<std::string>();
     const Jobs::Number number = jobs_.start(what, [work = std::move(work), what, kept](ProgressReporter& reporter) {
@@ -53,6 +90,7 @@ void TaskRunner::start_writing(const std::string& what, Work work)
         }
     });
     writers_.emplace(number, kept);
+    return number;
 }
 
 void TaskRunner::cancel_all()
@@ -73,7 +111,7 @@ JobModel TaskRunner::model() const
     others_.add_loading(states);
     for (Jobs::State& state : jobs_.states()) states.push_back(std::move(state));
     others_.add_reading(states);
-    return {.jobs = std::move(states)};
+    return {.jobs = std::move(states), .unfinished = unfinished_ ? &*unfinished_ : nullptr};
 }
 
 void TaskRunner::act(const ExportTask& task)
@@ -116,14 +154,68 @@ void TaskRunner::act(const ImportTask& task)
     wanted.program = "shvr view";
     if (wanted.budget_host_mib == 0)
         wanted.budget_host_mib = int64_t(keeper_.preferences().budget_host_mib.value_or(0.0));
-    const auto import = [this, wanted](ProgressReporter& reporter) -> Jobs::Completion {
+    unfinished_.reset();  // this import goes on with it, or it is of another project
+    const std::filesystem::path note = note_of_import();
+    const std::string line = line_of(wanted);
+    const auto import = [this, wanted, note, line](ProgressReporter& reporter) -> Jobs::Completion {
+        write_note(note, line);
         const ImportResult result = run(wanted, reporter);
+        remove_note(note);
         return [this, project = result.report.project, warnings = result.report.warnings] {
             for (const std::string& warning : warnings) say(warning, Weight::warning);
             others_.open(project);
         };
     };
-    start_writing("importing " + short_name(wanted.volume), import);
+    imports_.emplace(start_writing("importing " + short_name(wanted.volume), import), wanted);
+}
+
+/// Returns the file that names the import under way, for the next run of the program if this one ends early. Empty:
+/// there is none.
+std::filesystem::path TaskRunner::note_of_import() const
+{
+    const bool is_kept = !options_.settings.empty() && options_.has_preferences && !options_.is_script;
+    return is_kept ? options_.settings / "unfinished_import.json" : std::filesystem::path();
+}
+
+void TaskRunner::look_at_part(const ImportTask& task)
+{
+    jobs_.start("looking at what the import has left", [this, task](ProgressReporter&) -> Jobs::Completion {
+        return [this, task, found = unfinished_import(task.project)] {
+            unfinished_task_ = task;
+            unfinished_ = found;
+        };
+    });
+}
+
+void TaskRunner::look_for_unfinished()
+{
+    const std::filesystem::path note = note_of_import();
+    if (note.empty()) return;
+    jobs_.start("looking for an unfinished import", [this, note](ProgressReporter&) -> Jobs::Completion {
+        const std::optional<ImportTask> task = import_in(note);
+        if (!task) return {};
+        const std::optional<UnfinishedImport> found = unfinished_import(task->project);
+        if (!found) return {};
+        return [this, task, found] {
+            if (!imports_.empty() || unfinished_) return;
+            unfinished_task_ = *task;
+            unfinished_ = found;
+        };
+    });
+}
+
+void TaskRunner::act(const SettleImport& action)
+{
+    if (action.use == UnfinishedUse::resume) return act(unfinished_task_);
+    const std::filesystem::path part = unfinished_ ? unfinished_->part : std::filesystem::path();
+    unfinished_.reset();
+    const auto settle = [this, note = note_of_import(), project = unfinished_task_.project, part,
+                         deletes = action.use == UnfinishedUse::remove](ProgressReporter&) -> Jobs::Completion {
+        if (deletes) delete_unfinished_import(project);
+        remove_note(note);
+        return [this, part, deletes] { say(part.string() + (deletes ? " is deleted" : " is kept")); };
+    };
+    jobs_.start("deleting " + short_name(part), settle);
 }
 
 void TaskRunner::act(const LabelTask& task)

@@ -29,7 +29,10 @@ public:
     void act(const LabelTask& task);
     void act(const EvaluateTask& asked);
     void act(const CancelJob& action);
+    void act(const SettleImport& action);
 
+    /// Looks, in the background, for what an import has left that ended with an earlier run of the program.
+    void look_for_unfinished();
     /// Cancels all jobs, except saves and copies of the work.
     void cancel_all();
 
@@ -41,13 +44,18 @@ public:
     JobModel model() const;
 
 private:
+    std::filesystem::path note_of_import() const;
+    void look_at_part(const ImportTask& task);
     template <class Work>
-    void start_writing(const std::string& what, Work work);
+    Jobs::Number start_writing(const std::string& what, Work work);
 
     const PreferenceKeeper& keeper_;
     const Others others_;
     /// Jobs that write files, each with a text in which a cancelled job states which files it leaves on the disk.
     std::map<Jobs::Number, std::shared_ptr<const std::string>> writers_;
+    std::map<Jobs::Number, ImportTask> imports_;  ///< under way
+    ImportTask unfinished_task_;                  ///< the last import that was cancelled, has failed or was interrupted
+    std::optional<UnfinishedImport> unfinished_;  ///< what it has left
 };
 
 }  // namespace shvr::ui

@@ -14,6 +14,8 @@ void begin_banner(const char* name, const glm::vec2& begin, float width);
 /// Ends it, and returns its height.
 float end_banner();
 
+/// Says what an unfinished import has left, and offers to go on with it or to delete it. Returns its height.
+float unfinished_banner(const Model& model, const glm::vec2& begin, float width, Actions& actions);
 /// Says why work cannot be saved now, and offers what helps. Returns its height.
 float trouble_banner(const Model& model, const glm::vec2& begin, float width, Actions& actions);
 
