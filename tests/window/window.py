@@ -52,7 +52,7 @@ class Window(CliTest):
         folder = self.folder / "configuration" / "shvr"
         folder.mkdir(parents=True, exist_ok=True)
         (folder / "preferences.json").write_text(json.dumps(
-            {"shvr_preferences": 1, "keys": {name: {"keys": chord} for name, chord in keys.items()}}))
+            {"shvr_preferences": 1, "hints_seen": 3, "keys": {name: {"keys": chord} for name, chord in keys.items()}}))
         return {"XDG_CONFIG_HOME": folder.parent}
 
     @staticmethod

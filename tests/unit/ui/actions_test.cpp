@@ -156,6 +156,10 @@ std::vector<Action> samples()
             UseDevice{"hid:/dev/hidraw3"},
             FindDevices{},
             CalibrateDevice{},
+            KeepLook{.name = "two lines\n", .path = "/looks/a b.json"},
+            TakeLook{"xylem"},
+            ForgetLook{"xylem"},
+            SettleImport{UnfinishedUse::remove},
             RecordStylus{"/scans/a b.trace"},
             StopRecording{},
             FollowStylus{.path = "/scans/hand.trace", .by_hand = false, .node_every_voxels = 2.5}};
