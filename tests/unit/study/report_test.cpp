@@ -2,8 +2,12 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
+#include <string>
+#include <vector>
 
 #include "engine/pages/html.h"
 #include "engine/study/report/comparisons.h"
@@ -136,14 +140,47 @@ TEST_CASE("table 6.1 has the means and deviations that the thesis and its reader
     CHECK(near(summary(Outcome::segments_found).mean, 18.5));
     CHECK(near(summary(Outcome::topological_errors).mean, 0.7));
     CHECK(near(summary(Outcome::dice_partial).sd, .051));
+    CHECK(near(summary(Outcome::dice_full).sd, .023));
     CHECK(near(summary(Outcome::node_score).sd, .035));
+    CHECK(near(summary(Outcome::internode_score).sd, .034));
     CHECK(std::abs(summary(Outcome::segments_found).sd - 5.95) < 0.005);
-    CHECK(near(summary(Outcome::dice_partial).median, .9685));
+    CHECK(std::abs(summary(Outcome::topological_errors).sd - 1.25) < 0.005);
+    CHECK(std::abs(summary(Outcome::dice_partial).median - .968) < 1e-9);
     CHECK(summary(Outcome::nodes).mean == 51.5);
     CHECK(summary(Outcome::internodes).mean == 49.5);
     CHECK(summary(Outcome::nodes_out).mean == 1.7);
     CHECK(summary(Outcome::internodes_out).mean == 1.5);
     CHECK(summary(Outcome::centreline_rms).count == 0);
+
+    // The thesis's means of "out" are those of ten shares, not the shares of all nodes (17/515) and all internodes.
+    double nodes = 0.0, internodes = 0.0;
+    for (const ThesisRow& row : thesis_rows().subspan(1)) {
+        nodes += 0.1 * row.nodes_out / row.nodes;
+        internodes += 0.1 * row.internodes_out / row.internodes;
+    }
+    CHECK(near(nodes, .029));
+    CHECK(near(internodes, .031));
+}
+
+TEST_CASE("each row of table 6.1 holds what the thesis prints")
+{
+    const std::vector<std::string> printed = {
+        "1.000 0.824 0.971 0/70 1.000 0/71 26/26 0",    "2 0.883 0.770 0.969 0/32 0.914 2/29 11/26 0",
+        "3 0.862 0.819 0.916 3/63 0.967 1/63 26/26 0",  "5 0.907 0.841 0.938 3/57 1.000 0/54 17/26 0",
+        "6 0.966 0.841 0.974 1/73 1.000 0/72 23/26 0",  "7 0.988 0.814 0.977 0/46 0.995 0/46 14/26 0",
+        "8 0.991 0.817 0.959 1/43 0.987 0/38 11/26 0",  "9 0.970 0.803 0.918 2/46 0.968 2/48 26/26 1",
+        "10 0.881 0.847 0.977 0/53 0.941 3/47 19/26 4", "11 0.975 0.806 0.964 0/35 0.966 1/35 14/26 1",
+        "12 0.986 0.812 0.871 7/67 0.909 6/63 24/26 1"};
+    std::vector<std::string> held;
+    for (const ThesisRow& row : thesis_rows()) {
+        std::array<char, 80> line{};
+        std::snprintf(line.data(), line.size(), "%.3f %.3f %.3f %d/%d %.3f %d/%d %d/%.0f %d", row.dice_partial,
+                      row.dice_full, row.node_score, row.nodes_out, row.nodes, row.internode_score, row.internodes_out,
+                      row.internodes, row.segments_found, row.value(Outcome::segments_total).value_or(0.0),
+                      row.topological_errors);
+        held.push_back((row.participant == 0 ? "" : std::to_string(row.participant) + ' ') + line.data());
+    }
+    CHECK(held == printed);
 }
 
 TEST_CASE("a report states the answer, its interval, and where touch makes results worse")
