@@ -5,7 +5,7 @@
 // its voxels' centres or, for small balls, by four or nine lines.
 //
 // Three laws (a: relevant point, p: probe, r: radius):
-//   mean      proxy = mean of the relevant points in the ball: as in the thesis (eq. 3.3 - 3.5), without sampling noise
+//   mean      proxy = mean of the relevant points in the ball: as in the thesis (eq. 3.3, 3.4), without sampling noise
 //   potential offset = sum(a - p) / (sum(1 - |a - p|^2 / r^2) + eps N): the gradient of log(S + eps N), so no loop of
 //             the hand gains energy, and the force grows from 0 when the first voxel enters. N is the ball's volume.
 //   thesis    mean over 3000 points drawn once at random, as in the thesis: noisy and not continuous (1.7 to 2.5 %

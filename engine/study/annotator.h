@@ -33,13 +33,13 @@ struct StudyTimes {
     double patience = 2.0;  ///< a tool acts after this time even if the hand has not settled; a guess
 };
 
-/// The mistakes observed in the thesis's study (figures 6.2 and 6.6). Rates are per segment, unless stated.
+/// The mistakes observed in the thesis's study (section 6.2, figure 6.6). Rates are per segment, and ours.
 enum class Mistake : uint8_t {
     stops_early,        ///< painting ends before the bundle does
     receptacle,         ///< paints receptacle tissue; only at segments of florets
-    leaves_gaps,        ///< does not check the stroke, so parts stay unpainted
+    leaves_gaps,        ///< does not check the stroke, so parts stay unpainted, such as its back
     adaxial_unpainted,  ///< for adaxial segments
-    wrong_bundle,       ///< paints a bundle that is not joined to adaxial veins
+    wrong_bundle,       ///< paints one that is not joined to adaxial veins: the task is misunderstood
     joins_bundles,      ///< two separate bundles joined
     joins_distant,      ///< two distant nodes joined
     joins_within,       ///< joins two nodes of one bundle, bypassing the nodes between them

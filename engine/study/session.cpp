@@ -8,7 +8,7 @@ namespace shvr {
 
 namespace {
 
-constexpr double FAR_M = 0.010;           ///< longer reaches pause the force, as the thesis's participants did
+constexpr double FAR_M = 0.010;           ///< longer reaches pause the force, as navigation did (thesis 6.2)
 constexpr double ENGAGE_S = 1.0;          ///< time until a paused force is fully back (haptics/force.h)
 constexpr double MIN_REACH_S = 0.25;      ///< minimum duration of a reach (Meyer et al. 1988)
 constexpr double RIGHT_S = 0.1;           ///< time for which the probe must look right before a tool acts

@@ -15,8 +15,8 @@ struct StudyView {
     glm::dvec3 right{1.0, 0.0, 0.0};    ///< unit vector in the picture
     glm::dvec3 up() const { return glm::cross(to_eye, right); }
 };
-/// The views that annotators use; they start with the first. From the front, as in figure 6.2 of the thesis, from
-/// below, as in figure 6.7, from behind and from both sides. Never from above, where florets hide the section.
+/// The views that annotators use; they start with the first. From the front, from below, as figure 6.7 of the thesis
+/// shows the section, from behind and from both sides. Never from above, where florets hide the section.
 std::span<const StudyView> study_views();
 
 class StudySight {

@@ -10,7 +10,7 @@ namespace shvr {
 
 namespace {
 
-constexpr double NODE_SPACING_M = 0.0054;  ///< the thesis's participants placed 2.8 nodes per segment
+constexpr double NODE_SPACING_M = 0.0054;  ///< 2.8 nodes per segment, as in table 6.1: 515 nodes, 185 segments
 constexpr int TRIES = 3;                   ///< to place or select a node
 constexpr double OFF_AXIS = 1.2;           ///< in vein radii: a node that looks farther off is placed again
 

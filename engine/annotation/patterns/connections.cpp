@@ -1,4 +1,4 @@
-// Connections between sections of a flower head, and the stages of development (study.md 1.3; thesis, figure 5.3).
+// Connections between sections of a flower head, and the stages of development (thesis 5.2, figure 5.3).
 
 #include <algorithm>
 #include <array>

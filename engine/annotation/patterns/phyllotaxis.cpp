@@ -1,4 +1,4 @@
-// Phyllotaxis of florets, and alignment of adaxial veins with their parastichies (study.md 1.4).
+// Phyllotaxis of florets, and alignment of adaxial veins with their parastichies (thesis 5.2).
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-// Sectoriality of supply: which stem bundles are nearest to each floret, along the veins (study.md 1.4).
+// Sectoriality of supply: which stem bundles are nearest to each floret, along the veins (thesis 5.2).
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-// Course, spacing and network of adaxial veins (study.md 1.4; thesis, figure 5.4).
+// Course, spacing and network of adaxial veins (thesis 5.2, figure 5.4).
 
 #include <algorithm>
 #include <array>

@@ -14,8 +14,8 @@ namespace {
 enum SectionRandom : uint32_t { PLACES = 71, RADII };
 constexpr uint8_t SECTION_ADAXIAL = 2, SECTION_FLORET = 3, SECTION_SEPARATE = 4;
 constexpr double MIN_RADIUS = 0.0130, MAX_RADIUS = 0.0210;
-/// Radii of nodes relative to the vein. In the thesis, nodes of the ground truth were sized by hand, and some are wider
-/// than the vein. These factors reproduce that truth's scores (table 6.1): .971 for nodes, 1 for internodes.
+/// Radii of nodes relative to the vein. In the thesis, nodes have the size of the probe, and some are wider than the
+/// vein (4.1.2, 6.2). These factors reproduce that truth's scores (table 6.1): .971 for nodes, 1 for internodes.
 constexpr double WIDE_NODE = 1.105, NODE = 0.88;
 /// Separate bundles are joined to no others. To fill 29.9 % of all bundles' voxels, which gives a Dice score of .824,
 /// the square of their radius is this fraction of the other bundles' volume / (pi side).
