@@ -158,8 +158,8 @@ void add_study(CLI::App& program)
         ->check(CLI::Range(0, 1024));
     add_output_options(*command, options->common);
     command->footer(
-        "Small takes seconds, standard about an hour of two cores, full several hours: split it with --task, then join "
-        "it with shvr gather.\nExample:\n  shvr study --size small -o study");
+        "Small takes seconds, standard half an hour of two cores, full 4 core-hours: split it with --task (up to 90 "
+        "tasks), then join it with shvr gather.\nExample:\n  shvr study --size small -o study");
     command->callback([options] { run_study_command(*options); });
 }
 
