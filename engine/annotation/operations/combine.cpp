@@ -38,12 +38,14 @@ std::string note_of(CombineOp::How how)
 
 void perform(const CombineOp& op, MaskEdit& edit, const Progress& progress)
 {
-    const Replacement to = replacement_of(op);
+    // Bytes, for which the compiler compares many voxels in an instruction.
+    const auto group = uint8_t(op.group), with = uint8_t(op.with);
+    const auto [of_group, of_with] = replacement_of(op);
     edit.note(note_of(op.how));
-    for_each_brick(edit.mask(), progress, [&](int64_t brick) {
+    for_each_brick(edit.mask(), progress, [&, group, with, of_group, of_with](int64_t brick) {
         if (!edit.may_change(brick)) return;
         MaskBrick wanted = edit.read(brick);
-        for (uint8_t& voxel : wanted) voxel = voxel == op.group ? to.of_group : voxel == op.with ? to.of_with : voxel;
+        for (uint8_t& voxel : wanted) voxel = voxel == group ? of_group : voxel == with ? of_with : voxel;
         edit.want(brick, wanted);
     });
 }

@@ -1,9 +1,11 @@
 // Cuts by a polygon drawn in a view. A brick that the polygon does not cross in the view is inside or outside as a
-// whole, so only bricks along the polygon are tested voxel by voxel, each against the sides near it.
+// whole; others are divided into parts of 8^3 voxels, so only parts along the polygon are tested voxel by voxel, each
+// against the sides near it.
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "engine/annotation/operations/group_bricks.h"
 #include "engine/annotation/operations/run_operation.h"
@@ -151,6 +153,7 @@ private:
         Fate fate = Fate::each;
         bool depths = true;  ///< by their distances, too
         std::vector<Side> sides{};
+        bool cuts_whole() const { return fate == Fate::all && !depths; }
     };
     glm::dvec3 in_view(const glm::dvec3& voxel) const
     {
@@ -161,7 +164,8 @@ private:
     bool is_at_depth(double depth) const { return depth >= nearest_ && depth <= farthest_; }
     bool is_cut(const glm::dvec3& voxel, const Test& test) const;
     Seen seen(const VoxelBox& box) const;
-    Test test_for(const VoxelBox& box) const;
+    Test test_for(const VoxelBox& box, std::span<const Side> sides) const;
+    void cut_part(const VoxelBox& part, const Test& test, const Size3& corner, MaskBrick& wanted) const;
 
     const LassoOp& op_;
     MaskEdit& edit_;
@@ -169,7 +173,7 @@ private:
     LassoView view_;
     LassoAxes axes_;
     double nearest_, farthest_;
-    GroupSet chosen_;
+    std::array<uint8_t, 256> cut_to_{};  ///< by group: what a voxel of it becomes if it is cut
     std::vector<Side> sides_{};
 };
 
@@ -182,8 +186,10 @@ Cutter::Cutter(const LassoOp& op, MaskEdit& edit)
       nearest_(op.depth ? op.depth->x : -std::numeric_limits<double>::infinity()),
       farthest_(op.depth ? op.depth->y : std::numeric_limits<double>::infinity())
 {
-    if (op.groups.empty()) chosen_.set();
-    for (const uint8_t group : op.groups) chosen_[group] = true;
+    std::iota(cut_to_.begin(), cut_to_.end(), uint8_t{0});
+    for (const uint8_t group : op.groups) cut_to_[group] = uint8_t(op.to_group);
+    if (op.groups.empty()) cut_to_.fill(uint8_t(op.to_group));
+    cut_to_[0] = 0;
     for (size_t i = 0; i < op.polygon.size(); ++i)
         sides_.push_back({op.polygon[i], op.polygon[(i + 1) % op.polygon.size()]});
 }
@@ -222,7 +228,8 @@ Cutter::Seen Cutter::seen(const VoxelBox& box) const
     return seen;
 }
 
-Cutter::Test Cutter::test_for(const VoxelBox& box) const
+/// How to test the voxels of a box; `sides` are those near a box that contains it, or all.
+Cutter::Test Cutter::test_for(const VoxelBox& box, std::span<const Side> sides) const
 {
     using Fate = Test::Fate;
     const Seen at = seen(box);
@@ -231,11 +238,11 @@ Cutter::Test Cutter::test_for(const VoxelBox& box) const
     Test test{Fate::each, !(at.nearest >= nearest_ && at.farthest <= farthest_), {}};
     if (!at.is_in_front) {
         if (at.farthest <= 0.0) return {cuts_inside ? Fate::none : Fate::all, test.depths, {}};
-        test.sides = sides_;
+        test.sides.assign(sides.begin(), sides.end());
         return test;
     }
     bool is_crossed = false;
-    for (const Side& side : sides_) {
+    for (const Side& side : sides) {
         const Rectangle own = around(side);
         is_crossed = is_crossed || own.meets(at.place);
         const bool may_be_crossed = own.upper.x >= at.place.lower.x && own.lower.y <= at.place.upper.y &&
@@ -248,19 +255,37 @@ Cutter::Test Cutter::test_for(const VoxelBox& box) const
     return test;
 }
 
+void Cutter::cut_part(const VoxelBox& part, const Test& test, const Size3& corner, MaskBrick& wanted) const
+{
+    if (test.fate == Test::Fate::none) return;
+    for (int64_t z = part.lower.z; z < part.upper.z; ++z)
+        for (int64_t y = part.lower.y; y < part.upper.y; ++y)
+            for (int64_t x = part.lower.x; x < part.upper.x; ++x) {
+                const Size3 at(x, y, z);
+                uint8_t& voxel = wanted[size_t(index_of(at - corner, Size3(BRICK_SIDE)))];
+                const uint8_t cut = cut_to_[voxel];
+                if (cut != voxel && (test.cuts_whole() || is_cut(glm::dvec3(at) + 0.5, test))) voxel = cut;
+            }
+}
+
 void Cutter::cut(int64_t brick)
 {
+    constexpr int64_t PART = 8;
     if (!edit_.may_change(brick)) return;
     const VoxelBox box = edit_.mask().box_of(brick);
-    const Test test = test_for(box);
+    const Test test = test_for(box, sides_);
     if (test.fate == Test::Fate::none) return;
-    const bool is_whole = test.fate == Test::Fate::all && !test.depths;
     MaskBrick wanted = edit_.read(brick);
-    for (size_t index = 0; index < wanted.size(); ++index) {
-        uint8_t& voxel = wanted[index];
-        if (voxel == 0 || !chosen_[voxel]) continue;
-        const Size3 at = box.lower + position_of(int64_t(index), Size3(BRICK_SIDE));
-        if (is_whole || is_cut(glm::dvec3(at) + 0.5, test)) voxel = uint8_t(op_.to_group);
+    if (test.cuts_whole()) {
+        for (uint8_t& voxel : wanted) voxel = cut_to_[voxel];
+    } else {
+        for (int64_t z = box.lower.z; z < box.upper.z; z += PART)
+            for (int64_t y = box.lower.y; y < box.upper.y; y += PART)
+                for (int64_t x = box.lower.x; x < box.upper.x; x += PART) {
+                    const Size3 lower(x, y, z);
+                    const VoxelBox part{lower, glm::min(lower + PART, box.upper)};
+                    cut_part(part, test_for(part, test.sides), box.lower, wanted);
+                }
     }
     edit_.want(brick, wanted);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/annotation/sets/brick_bits.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/volume/voxel_numbers.h"
@@ -125,18 +126,37 @@ bool MaskEdit::is_within(int64_t brick, size_t index)
     return value >= limits_.within->x && value <= limits_.within->y;
 }
 
-bool MaskEdit::changes(int64_t brick, size_t index, uint8_t held, uint8_t wanted)
+bool MaskEdit::changes(int64_t brick, const MaskRun& run)
 {
+    const auto& [first, last, held, wanted] = run;
     if (input_.locked[held] || input_.locked[wanted]) {
-        ++result_.kept_locked[input_.locked[held] ? held : wanted];
+        result_.kept_locked[input_.locked[held] ? held : wanted] += last - first + 1;
         return false;
     }
     if ((limits_.only_unpainted && held != 0) || (limits_.inside && *limits_.inside != held) ||
-        (limits_.within && !is_within(brick, index))) {
-        ++result_.kept_by_limits;
+        (limits_.within && !is_within(brick, first))) {
+        result_.kept_by_limits += last - first + 1;
         return false;
     }
     return true;
+}
+
+/// Appends the changes of the voxels from `first` to before `end`, which lie in one row.
+void MaskEdit::want_row(MaskBrickChange& change, const MaskBrick& held, const MaskBrick& wanted, size_t first,
+                        size_t end)
+{
+    if (std::equal(held.begin() + first, held.begin() + end, wanted.begin() + first)) return;
+    for (size_t next = first; next < end;) {
+        first = next++;
+        if (held[first] == wanted[first]) continue;
+        // Intensities decide on single voxels.
+        if (!limits_.within) next = std::min(end_of_run(held, first, end), end_of_run(wanted, first, end));
+        const MaskRun run{uint16_t(first), uint16_t(next - 1), held[first], wanted[first]};
+        if (!changes(change.brick, run)) continue;
+        append_run(change.runs, run.first, run.last, run.before, run.after);
+        result_.moved[{run.before, run.after}] += int64_t(next - first);
+        result_.voxels += int64_t(next - first);
+    }
 }
 
 void MaskEdit::want(int64_t brick, const MaskBrick& wanted)
@@ -151,12 +171,7 @@ void MaskEdit::want(int64_t brick, const MaskBrick& wanted)
     for (int64_t z = box.lower.z; z < box.upper.z; ++z)
         for (int64_t y = box.lower.y; y < box.upper.y; ++y) {
             const size_t row = size_t(index_of(Size3(0, y - corner.y, z - corner.z), Size3(BRICK_SIDE)));
-            for (size_t i = row + size_t(box.lower.x - corner.x); i < row + size_t(box.upper.x - corner.x); ++i) {
-                if (held[i] == wanted[i] || !changes(brick, i, held[i], wanted[i])) continue;
-                append_run(change.runs, i, i, held[i], wanted[i]);
-                ++result_.moved[{held[i], wanted[i]}];
-                ++result_.voxels;
-            }
+            want_row(change, held, wanted, row + size_t(box.lower.x - corner.x), row + size_t(box.upper.x - corner.x));
         }
     if (change.runs.empty()) return;
     change.runs.shrink_to_fit();  // the history keeps it

@@ -69,7 +69,9 @@ public:
 
 private:
     bool is_within(int64_t brick, size_t index);
-    bool changes(int64_t brick, size_t index, uint8_t held, uint8_t wanted);
+    /// Whether locks and limits let the run change. With a range of intensities, the run must be one voxel.
+    bool changes(int64_t brick, const MaskRun& run);
+    void want_row(MaskBrickChange& change, const MaskBrick& held, const MaskBrick& wanted, size_t first, size_t end);
 
     const OperationInput& input_;
     const OperationLimits& limits_;

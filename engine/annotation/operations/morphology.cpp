@@ -1,5 +1,7 @@
 // Operations by distance: grow, shrink, open, close and hollow a group.
 
+#include <algorithm>
+
 #include "engine/annotation/operations/group_bricks.h"
 #include "engine/annotation/operations/run_operation.h"
 #include "engine/annotation/sets/voxels_near.h"
@@ -26,24 +28,21 @@ BrickSet without(BrickSet a, const BrickSet& b)
     return a;
 }
 
-std::vector<int64_t> bricks_of(const BrickSet& set)
+/// The bricks of two sets, ascending.
+std::vector<int64_t> bricks_of(const BrickSet& a, const BrickSet& b)
 {
     std::vector<int64_t> bricks;
-    for (const auto& [brick, bits] : set) bricks.push_back(brick);
+    for (const auto& [brick, bits] : a) bricks.push_back(brick);
+    for (const auto& [brick, bits] : b)
+        if (!a.contains(brick)) bricks.push_back(brick);
+    std::ranges::sort(bricks);
     return bricks;
 }
 
 BrickSet grown(const BrickSet& set, const Reach& reach, const Progress& progress)
 {
     const std::vector<int64_t> bricks = bricks_near(set, reach);
-    return voxels_near(set, false, bricks, reach, progress);
-}
-
-/// The voxels of the set within reach of a voxel outside the set.
-BrickSet rim_of(const BrickSet& set, const Reach& reach, const Progress& progress)
-{
-    const BrickSet near = voxels_near(set, true, bricks_of(set), reach, progress);
-    return without(set, without(set, near));
+    return voxels_near(set, bricks, reach, progress);
 }
 
 BrickSet shrunk(const BrickSet& set, const Reach& reach, const Progress& progress)
@@ -61,15 +60,19 @@ void replace(int64_t group, MaskEdit& edit, const Progress& progress, const Chan
         if (!is_empty(bits)) before.emplace(brick, bits);
     });
     const BrickSet after = change(before, part_of(progress, 0.1, 0.8));
-    for_each_brick(bricks_of(united(before, after)), part_of(progress, 0.8, 1.0), [&](int64_t brick) {
+    const auto bits_in = [](const BrickSet& set, int64_t brick) {
+        const auto found = set.find(brick);
+        return found == set.end() ? BrickBits{} : found->second;
+    };
+    for_each_brick(bricks_of(before, after), part_of(progress, 0.8, 1.0), [&](int64_t brick) {
         if (!edit.may_change(brick)) return;
         MaskBrick wanted = edit.read(brick);
-        const auto found = after.find(brick);
-        for (size_t i = 0; i < wanted.size(); ++i)
-            if (found != after.end() && (found->second[i / 32] >> (i % 32) & 1u) != 0)
-                wanted[i] = uint8_t(group);
-            else if (wanted[i] == group)
-                wanted[i] = 0;
+        const BrickBits held = bits_in(before, brick), kept = bits_in(after, brick);
+        for (size_t row = 0; row < kept.size(); ++row)
+            for (uint32_t left = held[row] ^ kept[row]; left != 0; left &= left - 1) {
+                const int x = std::countr_zero(left);
+                wanted[32 * row + size_t(x)] = (kept[row] >> x & 1u) != 0 ? uint8_t(group) : uint8_t{0};
+            }
         edit.want(brick, wanted);
     });
 }
@@ -87,7 +90,7 @@ void perform(const GrowOp& op, MaskEdit& edit, const Progress& progress)
     replace(op.group, edit, progress, [&](const BrickSet& group, const Progress& part) {
         std::vector<int64_t> bricks = bricks_near(group, reach);
         std::erase_if(bricks, [&](int64_t brick) { return !edit.may_change(brick); });
-        return united(group, voxels_near(group, false, bricks, reach, part));
+        return united(group, voxels_near(group, bricks, reach, part));
     });
 }
 

@@ -1,5 +1,9 @@
 // Threshold to a group. Reads the volume in pieces of whole file blocks, and only where intensities may be in range.
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
 #include <limits>
 #include <set>
 
@@ -25,6 +29,34 @@ Size3 piece_of(const VolumeSource& source)
     return piece;
 }
 
+/// Intensities that are bytes: from `lower` to `lower + most`, or none.
+struct ByteRange {
+    ByteRange(double from, double to) : is_empty(from > 255.0 || to < 0.0 || std::ceil(from) > std::floor(to))
+    {
+        if (is_empty) return;
+        lower = uint8_t(std::ceil(std::max(from, 0.0)));
+        most = uint8_t(std::floor(std::min(to, 255.0)) - lower);
+    }
+    bool is_empty;
+    uint8_t lower = 0, most = 0;
+};
+
+/// Gives the voxels of a row whose intensities are in range to the group.
+void mark_bytes(const std::byte* intensities, const ByteRange& range, uint8_t group, std::span<uint8_t> row)
+{
+    if (range.is_empty) return;
+    const uint8_t lower = range.lower, most = range.most;
+    // A row of a whole brick, since the compiler then compares many bytes in an instruction.
+    std::array<uint8_t, size_t(BRICK_SIDE)> values{}, groups{};
+    std::memcpy(values.data(), intensities, row.size());
+    std::ranges::copy(row, groups.begin());
+    for (size_t x = 0; x < groups.size(); ++x) {
+        const auto above = uint8_t(values[x] - lower);  // wraps below it
+        groups[x] = above <= most ? group : groups[x];
+    }
+    std::copy_n(groups.begin(), row.size(), row.begin());
+}
+
 class ThresholdSearch {
 public:
     ThresholdSearch(const ThresholdOp& op, MaskEdit& edit)
@@ -33,7 +65,8 @@ public:
           counts_(edit.mask().brick_counts()),
           group_(uint8_t(op.group)),
           from_(op.from.value_or(-std::numeric_limits<double>::infinity())),
-          to_(op.to.value_or(std::numeric_limits<double>::infinity()))
+          to_(op.to.value_or(std::numeric_limits<double>::infinity())),
+          bytes_(from_, to_)
     {}
     void search(const Progress& progress);
 
@@ -49,6 +82,7 @@ private:
     Size3 counts_;
     uint8_t group_;
     double from_, to_;
+    ByteRange bytes_;
 };
 
 bool ThresholdSearch::may_occur(const Size3& brick) const
@@ -128,13 +162,18 @@ void ThresholdSearch::search_brick(const Size3& brick, const VoxelBox& read, std
     const VoxelType type = source_.info().type;
     MaskBrick wanted = edit_.read(index);
     std::array<double, size_t(BRICK_SIDE)> values{};
-    const auto row = std::span(values).first(size_t(size.x));
     for (int64_t z = 0; z < size.z; ++z)
         for (int64_t y = 0; y < size.y; ++y) {
             const int64_t first = index_of(box.lower + Size3(0, y, z) - read.lower, read.size());
-            load_voxels(type, voxels.data() + size_t(first) * bytes_of(type), row);
+            const std::byte* const intensities = voxels.data() + size_t(first) * bytes_of(type);
+            const auto row = std::span(wanted).subspan(size_t(BRICK_SIDE * (y + BRICK_SIDE * z)), size_t(size.x));
+            if (type == VoxelType::uint8) {
+                mark_bytes(intensities, bytes_, group_, row);
+                continue;
+            }
+            load_voxels(type, intensities, std::span(values).first(row.size()));
             for (size_t x = 0; x < row.size(); ++x)
-                if (holds(row[x])) wanted[size_t(BRICK_SIDE * (y + BRICK_SIDE * z)) + x] = group_;
+                if (holds(values[x])) row[x] = group_;
         }
     edit_.want(index, wanted);
 }

@@ -177,16 +177,6 @@ std::vector<int64_t> indices_of(const BrickSet& set, const BrickSet& without, co
     return indices;
 }
 
-BrickSet common_of(BrickSet a, const BrickSet& b)
-{
-    for (auto& [brick, bits] : a) {
-        const auto found = b.find(brick);
-        for (size_t row = 0; row < bits.size(); ++row) bits[row] &= found == b.end() ? 0u : found->second[row];
-    }
-    std::erase_if(a, [](const auto& each) { return is_empty(each.second); });
-    return a;
-}
-
 int64_t voxels_in(const BrickSet& set)
 {
     int64_t count = 0;
@@ -211,8 +201,6 @@ BrickSet thinned(const BrickSet& set, const Reach& reach, const std::function<vo
     const uint64_t for_sets = 4 * set.size() * sizeof(BrickBits);
     takes(for_sets);
     Thinning thinning(set, reach);
-    std::vector<int64_t> bricks;
-    for (const auto& [brick, bits] : set) bricks.push_back(brick);
     const double step = std::min({reach.spacing.x, reach.spacing.y, reach.spacing.z});
     const int64_t voxels = voxels_in(set),
                   none_outside = reach.mask.size().x * reach.mask.size().y * reach.mask.size().z;
@@ -221,7 +209,7 @@ BrickSet thinned(const BrickSet& set, const Reach& reach, const std::function<vo
     for (double distance = step; done < voxels; distance = std::max(distance + step, 1.1 * distance)) {
         const bool is_last = voxels == none_outside || distance / step > double(MAX_REACH);
         const Reach within{reach.mask, reach.spacing, distance};
-        BrickSet next = is_last ? set : common_of(set, voxels_near(set, true, bricks, within, {}));
+        BrickSet next = is_last ? set : rim_of(set, within, {});
         const int64_t reached = voxels_in(next);
         if (reached > done) {
             takes(for_sets + 2 * sizeof(int64_t) * uint64_t(reached - done));

@@ -1,9 +1,11 @@
 #include "engine/annotation/sets/voxels_near.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
 
+#include "engine/annotation/sets/near_rows.h"
 #include "engine/annotation/sets/parabolas.h"
 #include "engine/base/error.h"
 
@@ -162,6 +164,44 @@ void TileSearch::search(const Size3& tile, std::span<const int64_t> bricks, Bric
     }
 }
 
+bool is_short(const Reach& reach)
+{
+    const Size3 voxels = reach.voxels();
+    return std::max({voxels.x, voxels.y, voxels.z}) <= MAX_ROW_REACH;
+}
+
+template <class Wanted>
+BrickSet near_by_rows(const BrickSet& set, bool is_inverted, std::span<const int64_t> bricks, const Reach& reach,
+                      const Progress& progress, const Wanted& wanted)
+{
+    NearRows search(set, is_inverted, reach);
+    BrickSet found;
+    for (size_t done = 0; done < bricks.size(); ++done) {
+        const BrickBits bits = search.search(bricks[done], wanted(bricks[done]));
+        if (!is_empty(bits)) found.emplace_hint(found.end(), bricks[done], bits);
+        tell(progress, double(done + 1) / double(bricks.size()));
+    }
+    return found;
+}
+
+BrickSet near_by_tiles(const BrickSet& set, bool is_inverted, std::span<const int64_t> bricks, const Reach& reach,
+                       const Progress& progress)
+{
+    std::map<std::array<int64_t, 3>, std::vector<int64_t>> tiles;
+    for (const int64_t brick : bricks) {
+        const Size3 tile = position_of(brick, reach.mask.brick_counts()) / TILE_BRICKS;
+        tiles[{tile.z, tile.y, tile.x}].push_back(brick);
+    }
+    TileSearch search(set, is_inverted, reach);
+    BrickSet found;
+    size_t done = 0;
+    for (const auto& [tile, its_bricks] : tiles) {
+        search.search({tile[2], tile[1], tile[0]}, its_bricks, found);
+        tell(progress, double(++done) / double(tiles.size()));
+    }
+    return found;
+}
+
 }  // namespace
 
 Size3 Reach::voxels() const
@@ -198,22 +238,26 @@ std::vector<int64_t> bricks_near(const BrickSet& set, const Reach& reach)
     return {bricks.begin(), bricks.end()};
 }
 
-BrickSet voxels_near(const BrickSet& set, bool is_inverted, std::span<const int64_t> bricks, const Reach& reach,
-                     const Progress& progress)
+BrickSet voxels_near(const BrickSet& set, std::span<const int64_t> bricks, const Reach& reach, const Progress& progress)
 {
-    std::map<std::array<int64_t, 3>, std::vector<int64_t>> tiles;
-    for (const int64_t brick : bricks) {
-        const Size3 tile = position_of(brick, reach.mask.brick_counts()) / TILE_BRICKS;
-        tiles[{tile.z, tile.y, tile.x}].push_back(brick);
+    if (!is_short(reach)) return near_by_tiles(set, false, bricks, reach, progress);
+    return near_by_rows(set, false, bricks, reach, progress,
+                        [&](int64_t brick) { return bits_inside(reach.mask.box_of(brick).size()); });
+}
+
+BrickSet rim_of(const BrickSet& set, const Reach& reach, const Progress& progress)
+{
+    std::vector<int64_t> bricks;
+    for (const auto& [brick, bits] : set) bricks.push_back(brick);
+    if (is_short(reach))
+        return near_by_rows(set, true, bricks, reach, progress, [&](int64_t brick) { return set.at(brick); });
+    BrickSet rim = near_by_tiles(set, true, bricks, reach, progress);
+    for (auto& [brick, bits] : rim) {
+        const BrickBits& held = set.at(brick);
+        for (size_t row = 0; row < bits.size(); ++row) bits[row] &= held[row];
     }
-    TileSearch search(set, is_inverted, reach);
-    BrickSet found;
-    size_t done = 0;
-    for (const auto& [tile, its_bricks] : tiles) {
-        search.search({tile[2], tile[1], tile[0]}, its_bricks, found);
-        tell(progress, double(++done) / double(tiles.size()));
-    }
-    return found;
+    std::erase_if(rim, [](const auto& each) { return is_empty(each.second); });
+    return rim;
 }
 
 }  // namespace shvr

@@ -2,9 +2,10 @@
 // The voxels within a physical distance of a set of voxels. Distances are exact, Euclidean and between centres of
 // voxels; each axis has its own spacing.
 //
-// Works in tiles of 64^3 voxels: computes the distance along x to the nearest voxel of the set, then minima of
-// parabolas along y and z (Felzenszwalb and Huttenlocher 2012), over the tile and its surroundings within the distance.
-// So the cost depends on the set and its surroundings, not on the size of the volume. One thread.
+// Short distances: by rows of bits (near_rows.h). Others: in tiles of 64^3 voxels, computes the distance along x to the
+// nearest voxel of the set, then minima of parabolas along y and z (Felzenszwalb and Huttenlocher 2012), over the tile
+// and its surroundings within the distance. So the cost depends on the set and its surroundings, not on the size of the
+// volume. One thread.
 
 #include <map>
 #include <vector>
@@ -33,9 +34,12 @@ inline constexpr int64_t MAX_REACH = 512;
 /// All bricks with voxels within reach of the set, and possibly other bricks near it; ascending.
 std::vector<int64_t> bricks_near(const BrickSet& set, const Reach& reach);
 
-/// The voxels of `bricks` (ascending) within reach of a voxel of the set or, if `is_inverted`, of a voxel of its
-/// complement in the volume. Positions beyond the volume's border belong to neither.
-BrickSet voxels_near(const BrickSet& set, bool is_inverted, std::span<const int64_t> bricks, const Reach& reach,
+/// The voxels of `bricks` (ascending) within reach of a voxel of the set.
+BrickSet voxels_near(const BrickSet& set, std::span<const int64_t> bricks, const Reach& reach,
                      const Progress& progress);
+
+/// The voxels of the set within reach of a voxel of the volume that is not in the set. Positions beyond the volume's
+/// border belong to neither.
+BrickSet rim_of(const BrickSet& set, const Reach& reach, const Progress& progress);
 
 }  // namespace shvr

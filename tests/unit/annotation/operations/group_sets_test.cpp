@@ -62,6 +62,9 @@ TEST_CASE("operations on groups agree with their definitions, whatever limits an
         }
         with_limits(ThresholdOp{.group = 2, .from = 60.0, .to = 200.0});
         with_limits(ThresholdOp{.group = 3, .to = 77.0});
+        with_limits(ThresholdOp{.group = 2, .from = 59.5, .to = 60.5});
+        with_limits(ThresholdOp{.group = 2, .from = 59.25, .to = 59.75});
+        with_limits(ThresholdOp{.group = 2, .from = 249.5, .to = 300.0});
         with_limits(FillHolesOp{.group = 1});
         with_limits(FillHolesOp{.group = 4});
     }

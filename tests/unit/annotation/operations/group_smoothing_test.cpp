@@ -1,5 +1,7 @@
 // Smoothing of groups; against tests/reference/group_operations.h.
 
+#include <cmath>
+
 #include "tests/unit/annotation/operations/operation_cases.h"
 
 using namespace shvr;
@@ -112,6 +114,44 @@ TEST_CASE("medians by the largest kernel agree with their definition, in the mid
         const auto most = std::ranges::max_element(counts);
         const uint8_t own = before.at(voxel);
         const uint8_t winner = counts[own] == *most ? own : uint8_t(most - counts.begin());
+        CHECK(mask.at(voxel) == winner);
+        moved += winner != own;
+    }
+    CHECK(moved > 3);
+}
+
+// Kind (operations on groups): the largest sums of weights
+TEST_CASE("Gaussians by the largest kernel agree with their definition, in the middle and at borders")
+{
+    std::mt19937 random(10);
+    const Size3 size(97, 70, 66);
+    DenseGroups before{size, std::vector<uint8_t>(size_t(97 * 70 * 66))};
+    for (size_t i = 0; i < before.groups.size(); ++i)  // a half space that is nearly full, with a rough border
+        before.groups[i] = uint8_t(int64_t(i) % 97 < 40 + int64_t(random() % 16) ? 3 : 0);
+    const int64_t reach = 32;
+    const double distance = 32.9;
+    Mask mask = mask_of(before);
+    const VolumeInfo volume = PatternSource::info_of(size, {1, 1, 1});
+    const OperationResult result =
+        run(SmoothOp{.distance = distance, .method = Method::gaussian}, {.mask = mask, .volume = volume});
+    CHECK(result.voxels > 1000);
+    apply(mask, result.changes);
+    std::vector<uint64_t> along;
+    for (int64_t i = 0; i <= reach; ++i) {
+        const double sigmas = double(i) / (0.5 * distance);
+        along.push_back(uint64_t(std::llround(1024.0 * std::exp(-0.5 * sigmas * sigmas))));
+    }
+    int moved = 0;
+    for (int i = 0; i < 24; ++i) {
+        Size3 voxel(int64_t(40 + random() % 16), int64_t(random() % 70), int64_t(random() % 66));
+        if (i < 8) voxel = {i % 2 * 96, i / 2 % 2 * 69, i / 4 * 65};
+        std::array<uint64_t, 4> weights{};
+        const Size3 lower = glm::max(voxel - reach, Size3(0)), upper = glm::min(voxel + reach + int64_t{1}, size);
+        reference::for_each_voxel(upper - lower, [&](const Size3& step) {
+            const Size3 away = glm::abs(lower + step - voxel);
+            weights[before.at(lower + step)] += along[size_t(away.x)] * along[size_t(away.y)] * along[size_t(away.z)];
+        });
+        const uint8_t own = before.at(voxel), winner = weights[0] == weights[3] ? own : weights[0] > weights[3] ? 0 : 3;
         CHECK(mask.at(voxel) == winner);
         moved += winner != own;
     }
