@@ -71,6 +71,7 @@ bool Workbench::apply(const Action& action)
         // What was unavailable has not failed, but work that is not saved when a person asks for it needs attention.
         const bool is_unavailable = dynamic_cast<const Declined*>(&error) || !ui::why_not(model(), action).empty();
         const bool is_declined = is_unavailable && !action.as<SaveOp>();
+        if (desk_.document && !is_unavailable) services_.painter.note_trouble(told_of(error));
         say(told_of(error), is_declined ? Weight::done : Weight::error);
         return false;
     }

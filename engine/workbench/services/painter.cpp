@@ -119,9 +119,21 @@ void Painter::follow_stroke()
     if (annotator.strokes_done() != done) stroke_ended();
 }
 
+void Painter::note_trouble(const std::string& failure)
+{
+    const bool is_about_journal = failure.starts_with(document_->session.journal_path.string() + ": ");
+    if (is_about_journal && document_->unsavable.empty() && !document_->only_looks()) document_->unsavable = failure;
+}
+
 void Painter::advance_stroke()
 {
-    const bool has_painted = document_->annotator.advance().has_value();
+    bool has_painted = false;
+    try {
+        has_painted = document_->annotator.advance().has_value();
+    } catch (const Error& error) {
+        note_trouble(error.what());
+        throw;
+    }
     const uint64_t before =
         std::exchange(stroke_uploads_, renderer_.volume().counts().value_or(DeviceVolume::Counts{}).uploads);
     if (has_painted || before != stroke_uploads_) stroke_progress_s_ = options_.now_s();

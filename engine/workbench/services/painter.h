@@ -38,6 +38,8 @@ public:
     static std::string why_stuck();
     /// Returns how many voxels the brush's preview showed when the last stroke began; null if no preview was shown.
     std::optional<int64_t> previewed_at_stroke() const { return previewed_at_stroke_; }
+    /// Notes a failure that says that no journal can be made, so that a banner stays until a save succeeds.
+    void note_trouble(const std::string& failure);
     PaintModel model() const;
 
 private:

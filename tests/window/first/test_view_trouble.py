@@ -58,6 +58,30 @@ class Trouble(Seen):
         self.assertEqual([path.name for path in disk.iterdir()], [session.name])
         self.finish()
 
+    def test_where_no_journal_can_be_made_a_banner_stays_until_a_save_succeeds(self):
+        disk = self.mount_disk("nr_inodes=40")
+        self.open_scan(self.put_onto(disk), preferences={"hints_seen": 3})
+        self.assertEqual(self.seen(window=BANNER), [])
+        others = []
+        try:   # the disk takes no more files, though it has space
+            while True:
+                others.append(disk / f"other{len(others)}")
+                others[-1].touch()
+        except OSError:
+            others.pop()
+        x, y = self.middle()
+        self.check_probe(x, y)
+        self.do("mousemove", x, y, "keydown", "f", "mousemove", x + 20, y, "keyup", "f", pause_s=0)
+        self.see_banner(f"Nothing can be saved: {disk / 'session.journal'}: cannot be written: No space left on device")
+        self.see_banner("Save as continues in another folder.")
+        for other in others:
+            other.unlink()
+        self.check_stroke((x, y + 30), (x + 20, y + 30))   # the picture begins below the banner
+        self.see("Painted ", "Status")
+        self.click_on("Try to save", BANNER)
+        self.see_no_more("", BANNER)
+        self.finish()
+
     def fill(self, disk, left):
         """Leaves so many bytes free."""
         free = os.statvfs(disk).f_bavail * os.statvfs(disk).f_frsize
