@@ -81,6 +81,7 @@ Lines lines_of(const BrickSet& set, const TraceFromMaskOp& op, MaskEdit& edit, c
     }
     lines.spurs = lines.graph.prune(op.spur);
     for (size_t vertex = 0; vertex < moved.size(); ++vertex) vertices[vertex].position = moved[vertex];
+    lines.spurs += lines.graph.drop_collapsed(0.25 * std::min({spacing.x, spacing.y, spacing.z}));
     lines.graph.merge_branches(tolerance_of(op, spacing));
     return lines;
 }

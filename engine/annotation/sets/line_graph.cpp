@@ -137,6 +137,14 @@ void LineGraph::remove_edge(uint32_t a, uint32_t b)
     std::erase(vertices[b].joined, a);
 }
 
+void LineGraph::remove_beyond_first(const Line& line)
+{
+    for (size_t i = 1; i < line.size(); ++i) {
+        remove_edge(line[i - 1], line[i]);
+        vertices[line[i]].is_gone = true;
+    }
+}
+
 LineGraph::Line LineGraph::line_from(uint32_t start, uint32_t next) const
 {
     Line line{start, next};
@@ -194,13 +202,28 @@ int64_t LineGraph::prune(double spur)
         const int64_t before = pruned;
         for (const auto& [reach, line] : spurs) {
             if (vertices[line.front()].joined.size() < 3) continue;  // it goes on from there now
-            for (size_t i = 1; i < line.size(); ++i) {
-                remove_edge(line[i - 1], line[i]);
-                vertices[line[i]].is_gone = true;
-            }
+            remove_beyond_first(line);
             ++pruned;
         }
         if (pruned == before) return pruned;
+    }
+}
+
+int64_t LineGraph::drop_collapsed(double within)
+{
+    int64_t dropped = 0;
+    for (;;) {
+        const int64_t before = dropped;
+        for (Line& line : lines()) {
+            if (vertices[line.back()].joined.size() != 1) std::ranges::reverse(line);
+            const auto is_near = [&](uint32_t vertex) {
+                return glm::distance(vertices[vertex].position, vertices[line.front()].position) <= within;
+            };
+            if (vertices[line.back()].joined.size() != 1 || !std::ranges::all_of(line, is_near)) continue;
+            remove_beyond_first(line);
+            ++dropped;
+        }
+        if (dropped == before) return dropped;
     }
 }
 
@@ -236,10 +259,7 @@ LineGraph::Line LineGraph::line_to_merge(uint32_t branch, uint32_t next, double 
 void LineGraph::merge(const Line& line)
 {
     Vertex &kept = vertices[line.front()], &gone = vertices[line.back()];
-    for (size_t i = 1; i < line.size(); ++i) {
-        remove_edge(line[i - 1], line[i]);
-        vertices[line[i]].is_gone = true;
-    }
+    remove_beyond_first(line);
     for (const uint32_t other : std::vector<uint32_t>(gone.joined)) {
         remove_edge(line.back(), other);
         join(line.front(), other);

@@ -33,10 +33,15 @@ struct LineGraph {
     /// Merges branches that are adjacent, or joined by a line that stays within `tolerance` of the first branch, unless
     /// that would remove a loop. A merged branch has the position and radius of the branch with the larger radius.
     void merge_branches(double tolerance);
+    /// Removes lines with a loose end whose vertices are all within `within` of the other end, as vertices that were
+    /// moved to the same place are: of a separate line, one end stays. Returns the number of lines removed.
+    int64_t drop_collapsed(double within);
     int64_t count_edges() const;
 
 private:
     void remove_edge(uint32_t a, uint32_t b);
+    /// Removes all of a line but its first vertex.
+    void remove_beyond_first(const Line& line);
     Line line_from(uint32_t start, uint32_t next) const;
     bool is_branch(uint32_t vertex) const { return vertices[vertex].joined.size() > 2; }
     void join(uint32_t a, uint32_t b);

@@ -125,24 +125,26 @@ void Thinning::remove_from(int direction, std::span<const int64_t> voxels, Remai
                            std::vector<int64_t>& next)
 {
     static constexpr std::array<uint32_t, 6> TOWARDS{1u << 4, 1u << 22, 1u << 10, 1u << 16, 1u << 12, 1u << 14};
-    std::vector<int64_t> border;
+    std::array<std::vector<int64_t>, 8> border;  // by parities of x, y and z
     for (const int64_t index : voxels) {
         const Size3 voxel = position_of(index, size_);
         if (!remaining_.has(voxel)) continue;
         const uint32_t around = remaining_.around(voxel);
-        if ((around & TOWARDS[size_t(direction)]) == 0 && can_go(around)) border.push_back(index);
+        if ((around & TOWARDS[size_t(direction)]) == 0 && can_go(around))
+            border[size_t(voxel.x % 2 + 2 * (voxel.y % 2) + 4 * (voxel.z % 2))].push_back(index);
     }
-    for (const int64_t index : border) {
-        const Size3 voxel = position_of(index, size_);
-        const uint32_t around = remaining_.around(voxel);
-        if (!can_go(around)) continue;
-        remaining_.remove(voxel);
-        for (uint32_t left = around & AROUND; left != 0; left &= left - 1) {
-            const int place = std::countr_zero(left);
-            const Size3 neighbour = voxel + Size3(place % 3 - 1, place / 3 % 3 - 1, place / 9 - 1);
-            if (may_go.has(neighbour)) next.push_back(index_of(neighbour, size_));
+    for (const std::vector<int64_t>& apart : border)
+        for (const int64_t index : apart) {
+            const Size3 voxel = position_of(index, size_);
+            const uint32_t around = remaining_.around(voxel);
+            if (!can_go(around)) continue;
+            remaining_.remove(voxel);
+            for (uint32_t left = around & AROUND; left != 0; left &= left - 1) {
+                const int place = std::countr_zero(left);
+                const Size3 neighbour = voxel + Size3(place % 3 - 1, place / 3 % 3 - 1, place / 9 - 1);
+                if (may_go.has(neighbour)) next.push_back(index_of(neighbour, size_));
+            }
         }
-    }
 }
 
 void Thinning::remove(std::vector<int64_t> voxels, Remaining& may_go, const Progress& progress, double done)
