@@ -4,8 +4,8 @@
 // the set's voxels are connected, and the other voxels at its faces are connected within its 18 neighbours over faces
 // and edges (Bertrand and Malandain 1994). Layers of growing distance from the outside go first (Pudney 1998), each in
 // turns of six directions (Palagyi and Kuba 1998), so lines end up in the middle. Voxels with one neighbour stay.
-// In a turn, voxels go by the parities of x, y and z, so that those that go one after another do not touch (Bertrand and
-// Aktouf 1994). In the order of their indices, a turn would eat a line of two voxels' width from its end, whole.
+// From one direction, voxels are removed by the parities of x, y and z, so that those removed one after another do not
+// touch (Bertrand and Aktouf 1994): in the order of their indices, a line two voxels wide would go as a whole.
 //
 // The order depends only on the set. One thread. Takes four times 4 KiB per brick, and up to 16 bytes per voxel of a
 // layer.

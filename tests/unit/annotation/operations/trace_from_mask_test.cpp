@@ -206,7 +206,7 @@ double uncovered(const TraceGraph& trace, const glm::dvec3& from, const glm::dve
 }
 
 // Kind (operations on groups): widths of an even number of voxels, where each end could be eaten along the whole line
-TEST_CASE("a line covers the length of its tube, but for about one radius at each end, in every direction")
+TEST_CASE("a line covers the length of its tube, except about a radius at each end, in every direction")
 {
     std::mt19937 random(5);
     const auto number = [&] { return double(random()) / 4294967296.0; };
