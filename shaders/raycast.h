@@ -65,6 +65,7 @@ struct RaycastParams {
     uvec2 drawn_end;
     vec3 box_lower;  ///< the drawn part of the volume, voxel space
     vec3 box_upper;
+    vec4 cut_plane;       ///< HAS_CUT_PLANE: nothing is drawn where dot(xyz, voxel) + w > 0
     vec3 position_limit;  ///< one ulp below the volume's end, so samples in its upper faces get the last voxel
     vec3 spacing;         ///< reference lengths per voxel
     vec3 inverse_spacing;

@@ -93,6 +93,7 @@ public:
         frustums_.emplace_back(view.camera, view.pixels);
         if (view.other_eye) frustums_.emplace_back(*view.other_eye, view.pixels);
         reference_ = std::min({volume.spacing.x, volume.spacing.y, volume.spacing.z});
+        beyond_ = plane_in_voxels(view.cut, volume.size, volume.spacing);
     }
 
     /// Lists the leaves for `detail`. Returns false if there are too many.
@@ -119,6 +120,13 @@ private:
         return voxels < 2.0 ? 0 : std::min(int(std::floor(std::log2(voxels))), levels_ - 1);
     }
 
+    /// Whether the oblique plane cuts away a box of voxels with room to spare for rounding.
+    bool is_beyond_plane(const glm::dvec3& lower, const glm::dvec3& upper) const
+    {
+        const glm::dvec3 along(beyond_), nearest = glm::mix(lower, upper, glm::lessThan(along, glm::dvec3(0.0)));
+        return glm::dot(along, nearest) + beyond_.w > 0.5 * reference_;
+    }
+
     bool visit(const BrickKey& key)
     {
         const VoxelBox voxels = voxels_of(key, volume_.size);
@@ -126,6 +134,7 @@ private:
         const glm::dvec3 lower(voxels.lower), upper(voxels.upper);
         if (glm::any(glm::lessThan(upper, view_.cut.lower)) || glm::any(glm::greaterThan(lower, view_.cut.upper)))
             return true;
+        if (is_beyond_plane(lower, upper)) return true;
         const Box box{lower * volume_.spacing, upper * volume_.spacing};
         double depth = std::numeric_limits<double>::infinity();
         int level = levels_;
@@ -153,6 +162,7 @@ private:
     const std::function<bool(const BrickKey&)>& shows_;
     size_t max_leaves_;
     double reference_ = 1.0;
+    glm::dvec4 beyond_{0.0};  ///< distance beyond the oblique cutting plane, of a voxel
     double detail_ = 1.0;
     std::vector<PageTree::Leaf> leaves_;
 };

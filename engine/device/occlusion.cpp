@@ -182,6 +182,29 @@ void Occlusion::mark_cut(const CutBox& before, const CutBox& after)
         slab(axis, before.lower[axis], after.lower[axis]);
         slab(axis, before.upper[axis], after.upper[axis]);
     }
+    const glm::dvec3& spacing = volume_->info().spacing;
+    const glm::dvec4 was = plane_in_voxels(before, size, spacing), is = plane_in_voxels(after, size, spacing);
+    if (was != is) changed_by_planes(was, is);
+}
+
+/// Marks bricks with voxels that one of the planes cuts away and the other leaves.
+void Occlusion::changed_by_planes(const glm::dvec4& was, const glm::dvec4& is)
+{
+    const auto extremes = [&](const glm::dvec4& plane, const VoxelBox& box) {
+        const glm::dvec3 normal(plane), lower(box.lower), upper(box.upper);
+        const double middle = glm::dot(normal, 0.5 * (lower + upper)) + plane.w;
+        const double reach = 0.5 * glm::dot(glm::abs(normal), upper - lower + 2.0);  // a voxel to spare on each side
+        return std::pair(middle - reach, middle + reach);
+    };
+    std::vector<VoxelBox> boxes;
+    for (const auto& [key, entry] : entries_) {
+        const VoxelBox box = voxels_of(key, volume_->info().size);
+        const auto [was_least, was_most] = extremes(was, box);
+        const auto [is_least, is_most] = extremes(is, box);
+        const bool stays_whole = was_most <= 0.0 && is_most <= 0.0, stays_away = was_least > 0.0 && is_least > 0.0;
+        if (!stays_whole && !stays_away) boxes.push_back(box);
+    }
+    for (const VoxelBox& box : boxes) changed(box);
 }
 
 void Occlusion::changed(const VoxelBox& changed, int64_t apron)
@@ -445,6 +468,7 @@ OcclusionCellsInput Occlusion::cells_input(int level, double stretch, const std:
     input.params = {.level = uint32_t(level),
                     .lower = glm::max(glm::vec3(look_->cut.lower), glm::vec3(0.0f)),
                     .upper = glm::min(glm::vec3(look_->cut.upper), glm::vec3(volume_->info().size)),
+                    .cut_plane = plane_in_voxels(look_->cut, volume_->info().size, volume_->info().spacing),
                     .brick_counts = glm::uvec3(brick_counts(volume_->info().size))};
     const TableRange range = table_range(look_->function, volume_->window(), false);
     set_table(input.params, range);

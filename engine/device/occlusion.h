@@ -99,6 +99,7 @@ private:
     void sync();
     void mark_all(bool cells);
     void mark_cut(const CutBox& before, const CutBox& after);
+    void changed_by_planes(const glm::dvec4& was, const glm::dvec4& is);
     double radius_of(int level) const;
     bool is_painted(const BrickKey& key, int reach) const;
     bool shows(const BrickKey& key, const Entry& entry) const;

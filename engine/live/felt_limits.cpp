@@ -46,21 +46,37 @@ void clear_outside(const CutBox& cut, RelevanceBits& bits)
         }
 }
 
-void clear_outside(const DepthLimits& limits, const glm::dvec3& spacing, RelevanceBits& bits)
+/// Clears the bits of the voxels for whose centre, in voxels of level 0, `is_cut` holds.
+template <class IsCut>
+void clear_where(const IsCut& is_cut, RelevanceBits& bits)
 {
     const Size3 size = bits.box.size();
-    const glm::dvec3 voxel = spacing * std::ldexp(1.0, bits.level);
+    const double width = std::ldexp(1.0, bits.level);
     for (int64_t z = 0; z < size.z; ++z)
         for (int64_t y = 0; y < size.y; ++y)
             for (int64_t w = 0; w < bits.words_per_row; ++w) {
                 uint32_t& word = bits.words[size_t(w + bits.words_per_row * (y + size.y * z))];
                 for (uint32_t left = word; left != 0; left &= left - 1) {
                     const int bit = std::countr_zero(left);
-                    const glm::dvec3 at = (glm::dvec3(bits.box.lower + Size3(32 * w + bit, y, z)) + 0.5) * voxel;
-                    const double depth = glm::dot(at - limits.eye, limits.forward);
-                    if (depth < limits.nearest || depth > limits.farthest) word &= ~(1u << bit);
+                    if (is_cut((glm::dvec3(bits.box.lower + Size3(32 * w + bit, y, z)) + 0.5) * width))
+                        word &= ~(1u << bit);
                 }
             }
+}
+
+void clear_outside(const DepthLimits& limits, const glm::dvec3& spacing, RelevanceBits& bits)
+{
+    clear_where(
+        [&](const glm::dvec3& voxel) {
+            const double depth = glm::dot(voxel * spacing - limits.eye, limits.forward);
+            return depth < limits.nearest || depth > limits.farthest;
+        },
+        bits);
+}
+
+void clear_beyond(const glm::dvec4& plane, RelevanceBits& bits)
+{
+    clear_where([&](const glm::dvec3& voxel) { return glm::dot(plane, glm::dvec4(voxel, 1.0)) > 0.0; }, bits);
 }
 
 }  // namespace
@@ -126,7 +142,11 @@ void limit_to_seen(const Look& look, const Camera& camera, const VolumeInfo& vol
         limits.unpainted = std::move(shown);
     const bool cuts = glm::any(glm::greaterThan(look.cut.lower, glm::dvec3(0.0))) ||
                       glm::any(glm::lessThan(look.cut.upper, glm::dvec3(volume.size)));
-    if (cuts) limits.cut = look.cut;
+    if (cuts) {
+        limits.cut.lower = look.cut.lower;
+        limits.cut.upper = look.cut.upper;
+    }
+    limits.plane = plane_in_voxels(look.cut, volume.size, volume.spacing);
     if (camera.near_distance > 0.0 || camera.far_distance > 0.0)
         limits.depths = DepthLimits{camera.eye, axes_of(camera).forward, camera.near_distance,
                                     camera.far_distance > 0.0 ? camera.far_distance : INF};
@@ -135,6 +155,7 @@ void limit_to_seen(const Look& look, const Camera& camera, const VolumeInfo& vol
 void apply_limits(const FeltLimits& limits, const glm::dvec3& spacing, const Mask* mask, RelevanceBits& bits)
 {
     if (limits.cut != CutBox{}) clear_outside(limits.cut, bits);
+    if (limits.plane != glm::dvec4(0.0)) clear_beyond(limits.plane, bits);
     if (limits.depths) clear_outside(*limits.depths, spacing, bits);
     if (limits.groups.all()) return;
     if (mask)

@@ -34,7 +34,8 @@ struct DepthLimits {
 struct FeltLimits {
     std::bitset<256> groups = std::bitset<256>().set();  ///< 0 stands for unpainted voxels
     std::optional<IntensityIntervals> unpainted{};       ///< intensities at which unpainted voxels are felt; null: any
-    CutBox cut{};
+    CutBox cut{};                                        ///< planes along the axes only
+    glm::dvec4 plane{0.0};                               ///< not felt where dot(xyz, voxel) + w > 0
     std::optional<DepthLimits> depths{};
     bool operator==(const FeltLimits&) const = default;
     bool need_mask() const { return !groups.all() || unpainted; }

@@ -109,12 +109,19 @@ Camera camera_of_view(const SideView& view, const VolumeInfo& volume)
 glm::dvec4 depth_plane(const Camera& camera, const glm::dvec3& lower, const glm::dvec3& upper,
                        const glm::dvec3& spacing)
 {
+    std::array<glm::dvec3, 8> corners;
+    for (int corner = 0; corner < 8; ++corner)
+        corners[size_t(corner)] = glm::mix(lower, upper, glm::bvec3(corner & 1, corner & 2, corner & 4));
+    return depth_plane(camera, corners, spacing);
+}
+
+glm::dvec4 depth_plane(const Camera& camera, std::span<const glm::dvec3> corners, const glm::dvec3& spacing)
+{
     check_camera(camera);
     const glm::dvec3 forward = frame_of(camera)->forward;
     double nearest = std::numeric_limits<double>::infinity(), farthest = -nearest;
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::bvec3 far(corner & 1, corner & 2, corner & 4);
-        const double depth = glm::dot(glm::mix(lower, upper, far) * spacing - camera.eye, forward);
+    for (const glm::dvec3& corner : corners) {
+        const double depth = glm::dot(corner * spacing - camera.eye, forward);
         nearest = std::min(nearest, depth);
         farthest = std::max(farthest, depth);
     }

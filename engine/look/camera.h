@@ -3,6 +3,7 @@
 // to the volume and connects them to rays, so that even a camera a million voxels away loses no accuracy.
 
 #include <numbers>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -77,6 +78,8 @@ RayPlanes ray_planes(const Camera& camera, const glm::uvec2& pixels, const Volum
 /// `lower` to `upper` begins in front of the eye or near clip plane, and 1 where it ends. Fails like `check_camera`.
 glm::dvec4 depth_plane(const Camera& camera, const glm::dvec3& lower, const glm::dvec3& upper,
                        const glm::dvec3& spacing);
+/// The same for the convex hull of `corners`, in voxels; 0 everywhere if there are none.
+glm::dvec4 depth_plane(const Camera& camera, std::span<const glm::dvec3> corners, const glm::dvec3& spacing);
 
 /// Fails if the camera is degenerate: eye at target, up parallel to the view, angle outside (0, 180), or not finite.
 void check_camera(const Camera& camera);

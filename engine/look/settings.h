@@ -117,11 +117,22 @@ struct RenderSettings {
     bool operator==(const RenderSettings&) const = default;
 };
 
-/// The part of the volume that six cutting planes leave, in voxels.
+/// The part of the volume that cutting planes leave: six along the axes, and an oblique one, of any orientation.
 struct CutBox {
-    glm::dvec3 lower{0.0};
+    glm::dvec3 lower{0.0};  ///< voxels
     glm::dvec3 upper{double(MAX_SIDE)};
+    std::optional<glm::dvec3> plane_normal{};  ///< direction in physical space towards what is removed; null: no plane
+    std::optional<glm::dvec3> plane_point{};   ///< voxel on the plane; default: the volume's centre
     bool operator==(const CutBox&) const = default;
 };
+
+/// Returns the plane as dot(xyz, voxel) + w, which is the distance beyond the plane in physical units; 0 everywhere if
+/// there is no plane.
+inline glm::dvec4 plane_in_voxels(const CutBox& cut, const Size3& size, const glm::dvec3& spacing)
+{
+    if (!cut.plane_normal) return glm::dvec4(0.0);
+    const glm::dvec3 along = glm::normalize(*cut.plane_normal) * spacing;
+    return {along, -glm::dot(along, cut.plane_point.value_or(0.5 * glm::dvec3(size)))};
+}
 
 }  // namespace shvr

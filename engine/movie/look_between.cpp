@@ -123,7 +123,22 @@ CutBox cut_between(const CutBox& from, const CutBox& to, double share, const Vol
     if (share >= 1.0) return to;
     const glm::dvec3 size(volume.size);
     const auto inside = [&](const glm::dvec3& corner) { return glm::clamp(corner, glm::dvec3(0.0), size); };
-    return {mixed(inside(from.lower), inside(to.lower), share), mixed(inside(from.upper), inside(to.upper), share)};
+    CutBox cut{mixed(inside(from.lower), inside(to.lower), share), mixed(inside(from.upper), inside(to.upper), share)};
+    if (!from.plane_normal && !to.plane_normal) return cut;
+    // A plane that is in one of the two only comes from the volume's far end, or goes there.
+    const auto whole = [&](const CutBox& other) {
+        const glm::dvec3 along = glm::normalize(*other.plane_normal);
+        CutBox away;
+        away.plane_normal = along;
+        away.plane_point = glm::dvec3(along.x > 0.0, along.y > 0.0, along.z > 0.0) * size;
+        return away;
+    };
+    const CutBox begin = from.plane_normal ? from : whole(to), end = to.plane_normal ? to : whole(from);
+    const glm::dvec3 between = mixed(glm::normalize(*begin.plane_normal), glm::normalize(*end.plane_normal), share);
+    // Opposite directions have none half-way.
+    cut.plane_normal = glm::length(between) > 1e-3 ? between : glm::normalize(*begin.plane_normal);
+    cut.plane_point = mixed(begin.plane_point.value_or(0.5 * size), end.plane_point.value_or(0.5 * size), share);
+    return cut;
 }
 
 Groups groups_between(const Groups& from, const Groups& to, double share)

@@ -130,6 +130,7 @@ KernelVariant with(KernelVariant kernel, const Constants& constants)
 Constants constants_of_steps(const Choice& choice, const RaycastInput& input)
 {
     Constants constants{{"GROUP_WIDTH", input.pixel_groups.width}};
+    if (input.params.cut_plane != glm::vec4(0.0f)) constants.emplace_back("HAS_CUT_PLANE", 1);
     if (choice.is_masked) constants.emplace_back("SMOOTH_BORDERS", input.smooth_borders);
     if (choice.is_integrated) return constants;
     constants.emplace_back("PREINTEGRATED", input.preintegrated ? input.params.opaque_map > 0 ? 2 : 1 : 0);

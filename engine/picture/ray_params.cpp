@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/look/cut_corners.h"
+
 namespace shvr {
 
 namespace {
@@ -56,11 +58,15 @@ void set_rays(gpu::RaycastParams& params, const Look& look, const Camera& camera
     set_planes(params, planes);
     params.box_lower = glm::max(glm::vec3(look.cut.lower), glm::vec3(0.0f));
     params.box_upper = glm::min(glm::vec3(look.cut.upper), glm::vec3(info.size));
+    params.cut_plane = plane_in_voxels(look.cut, info.size, info.spacing);
     const bool cut_away = glm::any(glm::greaterThan(params.box_lower, params.box_upper));
     if (planes.empty || cut_away) params.box_upper = params.box_lower = glm::vec3(-1.0f);
     params.light = light_direction(look.light, camera);
     if (look.blend.size > 0.0)
-        params.depth_plane = depth_plane(camera, params.box_lower, params.box_upper, info.spacing);
+        params.depth_plane = depth_plane(
+            camera,
+            corners_left(params.box_lower, params.box_upper, plane_in_voxels(look.cut, info.size, info.spacing)),
+            info.spacing);
 }
 
 void set_slice(gpu::RaycastParams& params, const Look& look, Scene& scene)
@@ -75,6 +81,7 @@ void set_slice(gpu::RaycastParams& params, const Look& look, Scene& scene)
     params.slice_paint = float(slices.paint_share);
     params.box_lower = glm::vec3(0.0f);
     params.box_upper = glm::vec3(volume.info().size);
+    params.cut_plane = glm::vec4(0.0f);
     params.blend_size = 0.0f;
 }
 

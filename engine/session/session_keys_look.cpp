@@ -273,6 +273,14 @@ void fields(Fields& f, CutBox& cut)
     f.vector("lower", cut.lower, voxel, {"lower corner of the part of the volume that is drawn", "voxels"});
     f.vector("upper", cut.upper, voxel, {"upper corner of the part of the volume that is drawn", "voxels"});
     f.check("", !glm::any(glm::greaterThan(cut.lower, cut.upper)), "a lower corner that is not above the upper one");
+    f.vector("plane_normal", cut.plane_normal, {-1e6, 1e6},
+             {.meaning = "direction in which the oblique cutting plane, of any orientation, removes the volume",
+              .allowed = "any length from 1e-6",
+              .standard = "no such plane"});
+    f.check("plane_normal", !cut.plane_normal || glm::length(*cut.plane_normal) >= 1e-6,
+            "a direction of length 1e-06 or more");
+    f.vector("plane_point", cut.plane_point, {-double(MAX_SIDE), 2.0 * double(MAX_SIDE)},
+             {.meaning = "point on that plane", .unit = "voxels", .standard = "the volume's centre"});
 }
 
 }  // namespace shvr

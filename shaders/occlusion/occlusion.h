@@ -89,6 +89,7 @@ struct OcclusionCellsParams {
     uint level;
     vec3 lower;  ///< lower corner, in level 0 voxels, of the box outside of which all is empty
     vec3 upper;
+    vec4 cut_plane;      ///< all is empty where dot(xyz, voxel) + w > 0
     uvec3 brick_counts;  ///< of level 0
     float far_exponent;  ///< exponent, for cells of 4^3 voxels, of transmittances from the table
 };

@@ -38,7 +38,8 @@ float opacity_of(const OcclusionCellsParams params, float code)
 // voxels of level 0.
 float opacity_held(const OcclusionCellsParams params, vec3 centre)
 {
-    const bool inside = all(greaterThanEqual(centre, params.lower)) && all(lessThan(centre, params.upper));
+    const bool inside = all(greaterThanEqual(centre, params.lower)) && all(lessThan(centre, params.upper)) &&
+                        dot(params.cut_plane.xyz, centre) + params.cut_plane.w <= 0.0;
     float held = -1.0;
 #ifdef MASKED
     // The position is clamped to the box; voxels outside the box are transparent in any case.

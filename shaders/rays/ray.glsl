@@ -1,6 +1,9 @@
 // A pixel's ray, and its section inside the drawn box. Lengths along a ray are in reference lengths (raycast.h).
 #include "../library/rays.glsl"
 
+// The oblique cutting plane. Without one, kernels are the same as if it could not exist.
+layout(constant_id = 18) const uint HAS_CUT_PLANE = 0u;
+
 struct Ray {
     vec3 origin;      // voxel space, at length 0
     vec3 direction;   // voxels per reference length
@@ -42,6 +45,16 @@ Ray ray_of(const RaycastParams params, uvec2 pixel, out Span span)
                                   still.z && (near.z < params.box_lower.z || near.z > params.box_upper.z)));
     span.begin = max(max(entry.x, entry.y), max(entry.z, 0.0));
     span.end = misses ? span.begin : min(min(exit.x, exit.y), min(exit.z, span.to_far));
+    if (HAS_CUT_PLANE != 0u) {
+        const float above = dot(params.cut_plane.xyz, near) + params.cut_plane.w;
+        const float rate = dot(params.cut_plane.xyz, ray.direction);
+        if (rate > 0.0)
+            span.end = max(min(span.end, -above / rate), span.begin);
+        else if (rate < 0.0)
+            span.begin = max(span.begin, min(-above / rate, span.end));
+        else if (above > 0.0)
+            span.end = span.begin;
+    }
     return ray;
 }
 

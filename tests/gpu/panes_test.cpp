@@ -42,6 +42,7 @@ TEST_CASE_FIXTURE(OnDevice, "slices are the voxels in their plane, whatever the 
     session.view.slices.black = 8000.0;
     session.view.slices.white = 60000.0;
     session.cut.lower = {30.0, 30.0, 30.0};  // cuts the volume, but not the slices
+    session.cut.plane_normal = glm::dvec3(1.0, 1.0, 1.0);
     const Camera camera = camera_along(volume(), {1, 1, 1}, 60.0);
     const ImageF image = draw(session, camera);
     double worst = 0.0;

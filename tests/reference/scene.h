@@ -73,6 +73,7 @@ struct Scene {
     std::optional<DistanceBlend> blend{};  ///< in integrate_discrete only
     glm::dvec3 cut_min{0.0};               ///< voxel space; nothing outside the cut box or the volume is drawn
     glm::dvec3 cut_max{std::numeric_limits<double>::infinity()};
+    glm::dvec4 cut_plane{0.0};   ///< nothing is drawn where dot(xyz, voxel) + w > 0
     glm::dvec3 background{0.0};  ///< linear light
 };
 

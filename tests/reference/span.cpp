@@ -24,6 +24,17 @@ std::optional<Interval> clip_to_box(const Ray& ray, const glm::dvec3& lower, con
     return inside;
 }
 
+std::optional<Interval> clip_to_plane(const Ray& ray, const glm::dvec4& plane, Interval inside)
+{
+    const glm::dvec3 normal(plane);
+    const double beyond = glm::dot(normal, ray.origin) + plane.w, rate = glm::dot(normal, ray.direction);
+    if (rate == 0.0) return beyond > 0.0 ? std::nullopt : std::optional(inside);
+    double& end = rate > 0.0 ? inside.upper : inside.lower;
+    end = rate > 0.0 ? std::min(end, -beyond / rate) : std::max(end, -beyond / rate);
+    if (!(inside.lower <= inside.upper)) return std::nullopt;
+    return inside;
+}
+
 std::optional<Span> span_of(const Scene& scene, const Ray& ray)
 {
     const glm::dvec3 physical = ray.direction * scene.spacing;
@@ -31,7 +42,8 @@ std::optional<Span> span_of(const Scene& scene, const Ray& ray)
     if (!(length_of_t > 0.0)) return std::nullopt;
     const glm::dvec3 lower = glm::max(scene.cut_min, glm::dvec3(0.0));
     const glm::dvec3 upper = glm::min(scene.cut_max, glm::dvec3(scene.size));
-    const std::optional<Interval> inside = clip_to_box(ray, lower, upper);
+    std::optional<Interval> inside = clip_to_box(ray, lower, upper);
+    if (inside) inside = clip_to_plane(ray, scene.cut_plane, *inside);
     if (!inside) return std::nullopt;
     return Span{.entry = ray.origin + inside->lower * ray.direction,
                 .step = ray.direction / length_of_t,

@@ -14,6 +14,9 @@ struct Interval {
 /// axes along which it does not move (+0 or -0) its position decides, not a division.
 std::optional<Interval> clip_to_box(const Ray& ray, const glm::dvec3& lower, const glm::dvec3& upper);
 
+/// The part of the interval in which dot(plane.xyz, point) + plane.w is at most 0.
+std::optional<Interval> clip_to_plane(const Ray& ray, const glm::dvec4& plane, Interval inside);
+
 /// Points entry + s * step, 0 <= s <= length.
 struct Span {
     glm::dvec3 entry{0.0};   ///< voxel space
@@ -23,7 +26,7 @@ struct Span {
     glm::dvec3 at(double s) const { return entry + s * step; }
 };
 
-/// The ray inside both the volume and the cut box; nothing if it misses or has no direction.
+/// The ray inside the volume and what the cuts leave of it; nothing if it misses or has no direction.
 std::optional<Span> span_of(const Scene& scene, const Ray& ray);
 
 }  // namespace shvr::reference

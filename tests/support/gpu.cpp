@@ -287,6 +287,41 @@ reference::DiscreteOptions tabulated(const TestVolume& volume, const Session& se
     return {.step = session.render.step_voxels, .table_entries = range.samples.entries};
 }
 
+namespace {
+
+/// The range, along a direction in physical space, of what the cuts leave of the volume: the extremes are among the
+/// points where three of its planes meet.
+std::pair<double, double> extent_of(const reference::Scene& scene, const glm::dvec3& direction)
+{
+    const glm::dvec3 lower = glm::max(scene.cut_min, glm::dvec3(0.0));
+    const glm::dvec3 upper = glm::min(scene.cut_max, glm::dvec3(scene.size));
+    std::vector<glm::dvec4> planes{scene.cut_plane};  // outside where dot(xyz, voxel) + w > 0
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::dvec4 far(0.0, 0.0, 0.0, -upper[axis]), near(0.0, 0.0, 0.0, lower[axis]);
+        far[axis] = 1.0;
+        near[axis] = -1.0;
+        planes.insert(planes.end(), {far, near});
+    }
+    double nearest = std::numeric_limits<double>::infinity(), farthest = -nearest;
+    for (size_t i = 0; i < planes.size(); ++i)
+        for (size_t j = i + 1; j < planes.size(); ++j)
+            for (size_t k = j + 1; k < planes.size(); ++k) {
+                const glm::dmat3 rows(glm::dvec3(planes[i]), glm::dvec3(planes[j]), glm::dvec3(planes[k]));
+                if (std::abs(glm::determinant(rows)) < 1e-12) continue;
+                const glm::dvec3 at =
+                    glm::inverse(glm::transpose(rows)) * -glm::dvec3(planes[i].w, planes[j].w, planes[k].w);
+                const bool is_left = std::ranges::all_of(
+                    planes, [&](const glm::dvec4& plane) { return glm::dot(plane, glm::dvec4(at, 1.0)) < 1e-9; });
+                if (!is_left) continue;
+                const double depth = glm::dot(at * scene.spacing, direction);
+                nearest = std::min(nearest, depth);
+                farthest = std::max(farthest, depth);
+            }
+    return {nearest, farthest};
+}
+
+}  // namespace
+
 reference::Scene scene_of(const TestVolume& volume, const Session& session, const Camera& camera)
 {
     const IntensityWindow window = volume.window();
@@ -298,6 +333,10 @@ reference::Scene scene_of(const TestVolume& volume, const Session& session, cons
         scene.points.push_back({window.code_of(point.intensity) / MAX_CODE, point.color, point.opacity});
     scene.cut_min = session.cut.lower;
     scene.cut_max = session.cut.upper;
+    if (const auto& normal = session.cut.plane_normal) {
+        const glm::dvec3 point = session.cut.plane_point.value_or(0.5 * glm::dvec3(volume.size));
+        scene.cut_plane = {*normal * volume.spacing, -glm::dot(*normal, point * volume.spacing)};
+    }
     if (session.light.shaded) {
         const double range = (volume.maximum - volume.minimum) * window.codes_per_unit / MAX_CODE;
         scene.shading = reference::Shading{.ambient = session.light.ambient,
@@ -310,19 +349,15 @@ reference::Scene scene_of(const TestVolume& volume, const Session& session, cons
     }
     if (session.blend.size > 0.0) {
         const glm::dvec3 forward = glm::normalize(camera.target - camera.eye);
-        const glm::dvec3 lower = glm::max(session.cut.lower, glm::dvec3(0.0)) * volume.spacing;
-        const glm::dvec3 upper = glm::min(session.cut.upper, glm::dvec3(volume.size)) * volume.spacing;
-        const glm::dvec3 middle = 0.5 * (lower + upper);
-        // Half the box's extent along the view direction.
-        const double reach = 0.5 * glm::dot(glm::abs(forward), upper - lower);
-        const double at_middle = glm::dot(middle, forward), at_eye = glm::dot(camera.eye, forward);
+        const auto [nearest, farthest] = extent_of(scene, forward);
+        const double at_eye = glm::dot(camera.eye, forward);
         scene.blend =
             reference::DistanceBlend{.color = session.blend.color.value_or(glm::dvec3(session.render.background)),
                                      .size = session.blend.size,
                                      .rate = session.blend.rate,
                                      .forward = forward,
-                                     .begin = std::max(at_middle - reach, at_eye + camera.near_distance),
-                                     .end = at_middle + reach};
+                                     .begin = std::max(nearest, at_eye + camera.near_distance),
+                                     .end = farthest};
     }
     return scene;
 }

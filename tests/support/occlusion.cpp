@@ -81,12 +81,20 @@ double ExpectedOcclusion::code(const glm::ivec3& at) const
     return volume_.voxels[size_t(held.x + volume_.size.x * (held.y + volume_.size.y * held.z))];
 }
 
+bool ExpectedOcclusion::is_beyond_plane(const glm::dvec3& voxel) const
+{
+    const CutBox& cut = session_.cut;
+    if (!cut.plane_normal) return false;
+    const glm::dvec3 point = cut.plane_point.value_or(0.5 * glm::dvec3(volume_.size));
+    return glm::dot(*cut.plane_normal, (voxel - point) * volume_.spacing) > 0.0;
+}
+
 bool ExpectedOcclusion::is_kept(const glm::ivec3& at) const
 {
     const glm::dvec3 centre = glm::dvec3(at) + 0.5;
     return glm::all(glm::greaterThanEqual(at, glm::ivec3(0))) && glm::all(glm::lessThan(at, volume_.size)) &&
            glm::all(glm::greaterThanEqual(centre, session_.cut.lower)) &&
-           glm::all(glm::lessThan(centre, session_.cut.upper));
+           glm::all(glm::lessThan(centre, session_.cut.upper)) && !is_beyond_plane(centre);
 }
 
 /// The nearest of the table's entries.
@@ -249,7 +257,8 @@ double ExpectedOcclusion::defined(const glm::ivec3& at, uint32_t directions, int
 {
     const auto opacity = [&](const glm::dvec3& p) {
         const bool is_inside = glm::all(glm::greaterThanEqual(p, glm::max(glm::dvec3(0.0), session_.cut.lower))) &&
-                               glm::all(glm::lessThan(p, glm::min(glm::dvec3(volume_.size), session_.cut.upper)));
+                               glm::all(glm::lessThan(p, glm::min(glm::dvec3(volume_.size), session_.cut.upper))) &&
+                               !is_beyond_plane(p);
         return is_inside ? session_.transfer_function.at(value_at(volume_, p)).a : 0.0;
     };
     return reference::occlusion_defined(opacity, asked(), at, side(at), directions, steps);

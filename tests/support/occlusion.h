@@ -39,6 +39,7 @@ private:
     glm::dvec3 sums_at(const Table& table, double code) const;
     double code(const glm::ivec3& at) const;
     bool is_kept(const glm::ivec3& at) const;
+    bool is_beyond_plane(const glm::dvec3& voxel) const;
     double opacity_of_code(double code) const;
     reference::OcclusionRamp ramp_of(const Table& table, double middle, const glm::dvec3& slope, double least,
                                      double most, double steepest) const;

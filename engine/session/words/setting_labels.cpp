@@ -90,6 +90,8 @@ constexpr SettingLabel LABELS[] = {
     {"interaction.workspace_scale", "workspace scale"},
     {"cut.lower", "near cutting planes", VOXELS},
     {"cut.upper", "far cutting planes", VOXELS},
+    {"cut.plane_normal", "direction of the oblique cutting plane"},
+    {"cut.plane_point", "point on the oblique cutting plane", VOXELS},
     {"measurements", "distances"},
     {"measurements.N.from", "first end of a distance", VOXELS},
     {"measurements.N.to", "second end of a distance", VOXELS},

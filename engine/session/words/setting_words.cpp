@@ -128,6 +128,12 @@ std::string group_change(const ChangedKey& changed, const json& was, const json&
     return sentence("set the ", what, " of ", group, " to ", value_in_words(changed.key, changed.to.dump()));
 }
 
+bool is_flipped(const json& was, const json& is)
+{
+    const auto at = [](const json& direction, size_t axis) { return direction[axis].get<double>(); };
+    return at(was, 0) == -at(is, 0) && at(was, 1) == -at(is, 1) && at(was, 2) == -at(is, 2);
+}
+
 /// "moved the far x cutting plane to voxel 60"
 std::vector<std::string> plane_changes(const json& was, const json& is)
 {
@@ -149,7 +155,17 @@ std::vector<std::string> plane_changes(const json& was, const json& is)
             told.push_back(now == none ? "removed " + plane
                                        : sentence("moved ", plane, " to voxel ", number_in_words(std::round(now))));
         }
-    if (is_whole && !told.empty()) return {"removed the cutting planes"};
+    const bool had = was.contains("plane_normal"), has = is.contains("plane_normal");
+    is_whole = is_whole && !has;
+    if (had != has)
+        told.push_back(has ? "added an oblique cutting plane" : "removed the oblique cutting plane");
+    else if (has && was["plane_normal"] != is["plane_normal"])
+        told.push_back(is_flipped(was["plane_normal"], is["plane_normal"]) ? "flipped the oblique cutting plane"
+                                                                           : "tilted the oblique cutting plane");
+    else if (has && was.value("plane_point", json()) != is.value("plane_point", json()))
+        told.push_back("moved the oblique cutting plane");
+    const bool is_oblique_only = had && told.size() == 1;
+    if (is_whole && !told.empty() && !is_oblique_only) return {"removed the cutting planes"};
     return told;
 }
 

@@ -3,20 +3,21 @@
 #include <algorithm>
 #include <limits>
 
+#include "engine/look/cut_corners.h"
+
 namespace shvr::ui {
 
 namespace {
 
-/// Distance from the eye, along the line of sight, at which the part of the volume within the cutting planes begins.
+/// Distance from the eye, along the line of sight, at which the part of the volume that the cutting planes leave
+/// begins; 0 if they leave nothing.
 double front_of(const Camera& camera, const CutBox& cut, const VolumeInfo& volume)
 {
-    const glm::dvec3 lower = glm::max(cut.lower, glm::dvec3(0.0)), upper = glm::min(cut.upper, glm::dvec3(volume.size)),
-                     forward = axes_of(camera).forward;
-    double front = std::numeric_limits<double>::infinity();
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::bvec3 far(corner & 1, corner & 2, corner & 4);
-        front = std::min(front, glm::dot(glm::mix(lower, upper, far) * volume.spacing - camera.eye, forward));
-    }
+    const std::vector<glm::dvec3> corners = corners_left(cut, volume);
+    const glm::dvec3 forward = axes_of(camera).forward;
+    double front = corners.empty() ? 0.0 : std::numeric_limits<double>::infinity();
+    for (const glm::dvec3& corner : corners)
+        front = std::min(front, glm::dot(corner * volume.spacing - camera.eye, forward));
     return camera.projection == Camera::Projection::perspective ? std::max(front, camera.near_distance) : front;
 }
 

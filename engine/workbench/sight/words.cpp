@@ -117,6 +117,10 @@ double depth_below_surface(const Camera& camera, const CutBox& cut, const Volume
         const double speed = way[axis] / length;
         if (speed != 0.0) begin = std::max(begin, ((speed > 0.0 ? lower : upper)[axis] - from[axis]) / speed);
     }
+    const glm::dvec4 plane = plane_in_voxels(cut, volume.size, volume.spacing);
+    const glm::dvec3 normal = glm::dvec3(plane) / volume.spacing;  // per physical unit
+    const double rate = glm::dot(normal, way / length);
+    if (rate < 0.0) begin = std::max(begin, -(glm::dot(normal, from) + plane.w) / rate);
     return std::max(length - begin, 0.0);
 }
 

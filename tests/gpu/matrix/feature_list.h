@@ -89,6 +89,12 @@ inline const std::vector<Feature> FEATURES{
          s.session.cut = {{5, 6, 7}, {40, 38, 36}};
      },
      {}},
+    {"oblique cutting plane",
+     [](Scenery& s) {
+         s.session.cut.plane_normal = glm::dvec3(0.5, -1.0, 0.7);
+         s.session.cut.plane_point = glm::dvec3(22.0, 15.0, 25.0);
+     },
+     {}},
     {"clip planes",
      [](Scenery& s) {
          s.camera.near_distance = 90.0;

@@ -71,6 +71,9 @@ TEST_CASE_FIXTURE(OnDevice,
     Session cut = occluded(dense);
     cut.cut = {{20.0, 3.5, 11.0}, {64.0, 39.0, 37.0}};
     check_values(*this, cut, 29);
+    cut.cut.plane_normal = glm::dvec3(0.31, -1.0, 0.77);
+    cut.cut.plane_point = glm::dvec3(35.2, 20.7, 25.1);
+    check_values(*this, cut, 29);
     load(blobs({36, 30, 20}, {1.0, 1.5, 2.5}));
     check_values(*this, occluded(dense), 13);
 }
@@ -139,7 +142,11 @@ TEST_CASE_FIXTURE(OnDevice, "a change rebuilds what rebuilding everything gives,
                                  .path = {{below(110), below(70), below(66)}}});
                 break;
             case 2: session.groups[2].visible = !session.groups[2].visible; break;
-            case 3: session.cut.lower = glm::dvec3(below(20), below(20), below(20)); break;
+            case 3:
+                session.cut.lower = glm::dvec3(below(20), below(20), below(20));
+                session.cut.plane_normal = glm::dvec3(1.0, 0.1 * below(20), -0.3);
+                session.cut.plane_point = glm::dvec3(90.3, below(70), 33.0);
+                break;
             default: annotator.undo(); break;
         }
         const ImageF renewed = draw(session, camera);

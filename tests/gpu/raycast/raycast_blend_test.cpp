@@ -38,6 +38,10 @@ TEST_CASE_FIXTURE(OnDevice, "blended pictures are those of the reference")
             check_below("inside", error(session, perspective({15.0, 13.0, 16.0}, {0.0, 1.0, 3.0}, 90.0)), 5e-6);
             session.cut = {{3.0, 4.5, 2.0}, {20.25, 20.0, 30.0}};
             check_below("cut", error(session, camera_along(volume(), {1, 2, 3}, 40.0)), 5e-6);
+            session.cut.plane_normal = glm::dvec3(0.3, 1.0, -0.7);
+            check_below("cut obliquely", error(session, camera_along(volume(), {1, 2, 3}, 40.0)), 5e-6);
+            session.cut.plane_normal = glm::dvec3(-1.0, -2.0, -2.5);  // the front is cut away
+            check_below("cut from the front", error(session, camera_along(volume(), {1, 2, 3}, 40.0)), 5e-6);
             session.blend.color.reset();  // default: the background's
             check_below("to the background", error(session, camera_along(volume(), {1, 2, 3}, 40.0)), 5e-6);
         }

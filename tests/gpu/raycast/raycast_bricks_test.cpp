@@ -93,6 +93,10 @@ TEST_CASE_FIXTURE(OnDevice, "leaping over empty space changes no bit, under rand
         session.render.step_voxels = std::array{0.25, 0.5, 0.77, 1.0, 2.0}[size_t(i % 5)];
         session.render.preintegration = session.render.step_voxels <= 1.0 && i % 7 < 3;
         if (i % 4 == 1) session.cut = {glm::dvec3(4.0 * unit(random)), glm::dvec3(12.0, 24.0, 40.0)};
+        if (i % 4 == 3) {
+            session.cut.plane_normal = glm::dvec3(unit(random) - 0.5, unit(random) - 0.5, 0.1 + unit(random));
+            session.cut.plane_point = glm::dvec3(60.0 * unit(random), 40.0 * unit(random), 10.0 + 30.0 * unit(random));
+        }
         const Camera camera =
             camera_along(volume(), {unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5}, 60.0);
         const ImageF leaping = draw(session, camera);

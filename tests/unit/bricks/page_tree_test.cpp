@@ -61,6 +61,26 @@ TEST_CASE("without detail every brick of the finest level is a leaf, and is foun
     for (size_t i = 1; i < tree.leaves.size(); ++i) CHECK(tree.leaves[i - 1].depth <= tree.leaves[i].depth);
 }
 
+TEST_CASE("bricks beyond an oblique plane are no leaves, and all others are")
+{
+    VolumeInfo info = cube(128);  // 4^3 bricks
+    info.spacing = {1.0, 2.0, 0.5};
+    PageView view = front(info, 64, 0.0);
+    const size_t all = make_page_tree(info, 3, view, everything).leaves.size();
+    view.cut.plane_normal = glm::dvec3(1.0, 0.5, -2.0);
+    view.cut.plane_point = glm::dvec3(70.0, 60.0, 50.0);
+    const PageTree tree = make_page_tree(info, 3, view, everything);
+    CHECK(tree.leaves.size() < all);
+    for (uint32_t z = 0; z < 128; z += 8)
+        for (uint32_t y = 0; y < 128; y += 8)
+            for (uint32_t x = 0; x < 128; x += 8) {
+                const glm::dvec3 from_plane = (glm::dvec3(x, y, z) + 0.5 - *view.cut.plane_point) * info.spacing;
+                const double beyond = glm::dot(*view.cut.plane_normal, from_plane);
+                if (beyond <= 0.0) CHECK(leaf_at(tree, {x, y, z}));
+                if (beyond > 150.0) CHECK(!leaf_at(tree, {x, y, z}));  // more than a brick
+            }
+}
+
 TEST_CASE("bricks are as coarse as pixels allow")
 {
     const VolumeInfo info = cube(2048);

@@ -140,6 +140,8 @@ TEST_CASE("voxels are felt where they are seen: between planes, of a shown group
     look.groups[3].opacity = 0.0;
     look.groups[4].parent = 2;
     look.cut = {{4.0, 3.5, 2.0}, {45.0, 33.25, 36.0}};
+    look.cut.plane_normal = glm::dvec3(1.0, -0.37, 0.21);
+    look.cut.plane_point = glm::dvec3(38.13, 20.0, 18.0);
     Camera camera;
     camera.eye = {25.0, 30.0, -100.0};
     camera.target = {25.0, 32.0, 36.0};
@@ -178,9 +180,11 @@ TEST_CASE("voxels are felt where they are seen: between planes, of a shown group
                     const bool is_painted = 2 * (voxels - painted[0]) >= voxels && voxels > painted[0];
                     const glm::dvec3 middle = (glm::dvec3(at) + 0.5) * double(step);
                     const double depth = glm::dot(middle * spacing - camera.eye, axes_of(camera).forward);
-                    const bool is_between = glm::all(glm::greaterThanEqual(middle, look.cut.lower)) &&
-                                            glm::all(glm::lessThan(middle, look.cut.upper)) && depth >= 120.0 &&
-                                            depth <= 160.0;
+                    const bool is_between =
+                        glm::all(glm::greaterThanEqual(middle, look.cut.lower)) &&
+                        glm::all(glm::lessThan(middle, look.cut.upper)) &&
+                        glm::dot(*look.cut.plane_normal, (middle - *look.cut.plane_point) * spacing) <= 0.0 &&
+                        depth >= 120.0 && depth <= 160.0;
                     const bool expected = intensity >= THRESHOLD && is_between && seen > 0 && seen >= hidden &&
                                           (is_painted || look.transfer_function.at(intensity).a > 0.0);
                     wrong += expected != bool(bit_of(bits, {x, y, z}));

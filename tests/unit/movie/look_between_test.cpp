@@ -81,6 +81,20 @@ TEST_CASE("cuts move from the volume's border")
     const CutBox middle = cut_between(CutBox{}, cut, 0.5, volume_of({10, 10, 10}));
     CHECK(middle.lower == glm::dvec3(1, 0, 0));
     CHECK(middle.upper == glm::dvec3(10, 7, 10));
+    // A plane comes from where it cuts nothing, and two turn into each other.
+    CutBox plane;
+    plane.plane_normal = glm::dvec3(2, 0, 0);
+    plane.plane_point = glm::dvec3(4, 5, 5);
+    const CutBox coming = cut_between(CutBox{}, plane, 0.5, volume_of({10, 10, 10}));
+    CHECK(*coming.plane_normal == glm::dvec3(1, 0, 0));
+    CHECK(coming.plane_point->x == 7.0);
+    CHECK(cut_between(plane, CutBox{}, 0.5, volume_of({10, 10, 10})).plane_point->x == 7.0);
+    CHECK(!cut_between(plane, CutBox{}, 1.0, volume_of({10, 10, 10})).plane_normal);
+    CutBox turned = plane;
+    turned.plane_normal = glm::dvec3(0, 3, 0);
+    CHECK(*cut_between(plane, turned, 0.5, volume_of({10, 10, 10})).plane_normal == glm::dvec3(0.5, 0.5, 0));
+    turned.plane_normal = glm::dvec3(-1, 0, 0);
+    CHECK(glm::length(*cut_between(plane, turned, 0.5, volume_of({10, 10, 10})).plane_normal) > 0.5);
 }
 
 TEST_CASE("hidden groups fade, and what they inherit counts")

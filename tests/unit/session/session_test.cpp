@@ -85,7 +85,7 @@ const std::string EVERYTHING = R"({
            "slices": {"black": -20, "white": 300.5, "paint_share": 0.25, "zoom": 3, "cross": [4, 5.5, 6]}, "overview_zoom": 1.5,
            "volume": false, "meshes": false, "cut_box": true, "solo": 7},
   "interaction": {"resolution": 0.5, "frames_per_second": 25, "screenshot_scale": 3, "workspace_scale": 2.5},
-  "cut": {"lower": [1, 2, 3], "upper": [40, 50, 60.5]},
+  "cut": {"lower": [1, 2, 3], "upper": [40, 50, 60.5], "plane_normal": [0, 1, -2], "plane_point": [3, 4.5, 5]},
   "probe": {"voxel": [10, 20, 30.5], "radius_voxels": 2.5, "group": 7, "brush": "speckle", "region": "box",
             "connectivity": 26, "paint_threshold": 120.5, "haptic_threshold": -3, "shown": true, "shell": true, "shell_opacity": 0.25,
             "preview": true, "density": {"offset": 12.5, "falloff": "distance"}, "paints_group": false,
@@ -167,7 +167,7 @@ TEST_CASE("every key of a session is read")
                                        true,
                                        uint8_t{7}});
     CHECK(session.interaction == InteractionSettings{0.5, 25.0, 3, 2.5});
-    CHECK(session.cut == CutBox{{1, 2, 3}, {40, 50, 60.5}});
+    CHECK(session.cut == CutBox{{1, 2, 3}, {40, 50, 60.5}, glm::dvec3(0, 1, -2), glm::dvec3(3, 4.5, 5)});
     const BrushSettings brush{
         Brush::speckle, RegionShape::box, 7, 120.5, 2.5, 26, DensityBrush{12.5, Falloff::distance}, false};
     ProbeSettings probe{glm::dvec3(10, 20, 30.5), brush, -3, true, true, 0.25, true};
@@ -425,6 +425,7 @@ TEST_CASE("values of the wrong type or range are refused with what was found and
                  "surfaces.0.radius is 1; expected either radius or radii"},
             Case{R"("surfaces": [{"from": [0, 0, 0], "radius": 1}, {"from": [0, 0, 1e16], "radius": 1}])",
                  "surfaces.1.from.2 is 1e+16; expected a number from"},
+            Case{R"("cut": {"plane_normal": [0, 0, 0]})", "cut.plane_normal is [0"},
             Case{R"("cut": {"lower": [-1, 0, 0]})", "cut.lower.0 is -1; expected a number from 0 to"},
             Case{R"("annotation": {"mask": ""})", "annotation.mask is \"\"; expected a path"},
             Case{R"("annotation": {"density": 3})", "annotation.density is 3; expected"},

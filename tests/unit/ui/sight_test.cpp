@@ -106,6 +106,12 @@ TEST_CASE("The probe's depth is counted from where what is drawn begins")
     camera.projection = Camera::Projection::orthographic;
     camera.height = 100.0;
     CHECK(depth_below_surface(camera, {}, info, {90.0, 30.0, 80.0}) == doctest::Approx(30.0));
+    CutBox plane;
+    plane.plane_normal = glm::dvec3(0.0, -1.0, 0.0);
+    plane.plane_point = glm::dvec3(0.0, 12.0, 0.0);
+    const CutBox box{.lower = {0.0, 12.0, 0.0}, .upper = {512.0, 256.0, 512.0}};
+    CHECK(depth_below_surface(camera, plane, info, {90.0, 30.0, 80.0}) ==
+          doctest::Approx(depth_below_surface(camera, box, info, {90.0, 30.0, 80.0})));
     CHECK(depth_below_surface(camera, {.lower = {0.0, 12.0, 0.0}, .upper = {512.0, 256.0, 512.0}}, info,
                               {90.0, 30.0, 80.0}) == doctest::Approx(18.0));
     camera.near_distance = 520.0;  // 20 into the volume

@@ -66,6 +66,12 @@ TEST_CASE("moved planes and measured distances are told, not the numbers of thei
     CHECK(words_of(R"({"cut":{"lower":[0,3,0]}})", cut) ==
           "removed the near x cutting plane and moved the near y cutting plane to voxel 3");
     CHECK(words_of(R"({"cut":null})", cut) == "removed the cutting planes");
+    const char* const oblique = R"({"cut":{"plane_normal":[1,0,-2],"plane_point":[5,5,5]}})";
+    CHECK(words_of(oblique) == "added an oblique cutting plane");
+    CHECK(words_of(R"({"cut":{"plane_point":[5,6,5]}})", oblique) == "moved the oblique cutting plane");
+    CHECK(words_of(R"({"cut":{"plane_normal":[1,0,2]}})", oblique) == "tilted the oblique cutting plane");
+    CHECK(words_of(R"({"cut":{"plane_normal":[-1,0,2]}})", oblique) == "flipped the oblique cutting plane");
+    CHECK(words_of(R"({"cut":null})", oblique) == "removed the oblique cutting plane");
     const char* const one = R"({"measurements":[{"from":[0,0,0],"to":[1,2,3]}]})";
     CHECK(words_of(one) == "measured a distance");
     CHECK(words_of(R"({"measurements":null})", one) == "removed all distances");

@@ -77,6 +77,11 @@ TEST_CASE("a depth is counted from where the visible part begins, and to both si
     set_outline(op, panes[0], drawn, 7.0, cut, volume);
     CHECK(op.depth->x == doctest::Approx(25.0 - camera.eye.y));
     CHECK(op.depth->y == doctest::Approx(25.0 - camera.eye.y + 7.0));
+    CutBox oblique;  // leaves y >= x + 30, in physical units
+    oblique.plane_normal = glm::dvec3(1.0, -1.0, 0.0);
+    oblique.plane_point = glm::dvec3(20.0, 40.0, 0.0);
+    set_outline(op, panes[0], drawn, 7.0, oblique, volume);
+    CHECK(op.depth->x == doctest::Approx(30.0 - camera.eye.y));
     for (size_t i = 1; i < panes.size(); ++i) {
         set_outline(op, panes[i], drawn, 7.0, cut, volume);
         CHECK((op.depth == glm::dvec2(-3.5, 3.5)));
