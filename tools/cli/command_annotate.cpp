@@ -49,12 +49,13 @@ ui::LoadAnnotation read_load(const JsonNode& line)
 /// Reads and checks the whole script before anything is run.
 std::vector<Command> read_commands(const std::filesystem::path& path)
 {
+    static constexpr std::string_view LOAD[] = {"load"};
     std::vector<Command> commands;
     for_each_line(path, [&](const JsonNode& line, int number) {
-        if (line.is_object() && line["op"].is("load"))
+        if (line.is_object() && line["op"].is(LOAD[0]))
             commands.push_back({number, read_load(line)});
         else
-            commands.push_back({number, read_script_op(line)});
+            commands.push_back({number, read_script_op(line, LOAD)});
     });
     return commands;
 }

@@ -319,13 +319,15 @@ std::vector<std::string_view> script_op_names()
     return names;
 }
 
-ScriptOp read_script_op(const JsonNode& line)
+ScriptOp read_script_op(const JsonNode& line, std::span<const std::string_view> others)
 {
     if (!line.is_object()) line.refuse("an object such as {\"op\":\"save\"}");
     std::vector<std::string_view> names = script_op_names();
     for (const OperationRow& row : OPERATION_ROWS)
         if (*row.alias != 0) names.emplace_back(row.alias);
+    names.insert(names.end(), others.begin(), others.end());
     const size_t chosen = line["op"].choice(names);
+    SHVR_CHECK(chosen + others.size() < names.size());
     return chosen < std::size(OPS) ? OPS[chosen].read(line) : read_operation(line, names[chosen]);
 }
 

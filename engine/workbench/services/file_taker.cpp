@@ -447,7 +447,7 @@ void FileTaker::load(const ReadFile& read)
     if (annotator.stroke_is_running()) fail(path, ": a stroke is being painted; load it again");
     others_.record_settings();
     std::vector<Change> changes = changes_by(read);
-    if (read.looks != read.groups && document_->session.groups == read.groups && !document_->is_script()) {
+    if (read.looks != read.groups && document_->session.groups == read.groups) {
         Session after = document_->session;
         after.groups = read.looks;
         const SettingValues before = annotator.work().settings();

@@ -50,6 +50,28 @@ class Load(CliTest):
                       {"op": "save"})
         self.assertEqual((self.folder / "paint.mask").read_bytes(), self.groups)
 
+    def test_names_of_groups_come_with_a_mask_and_go_with_it(self):
+        voxels = bytes(1 if i < 30 else 0 for i in range(VOXELS))
+        header = (f"NRRD0004\ntype: uint8\ndimension: 3\nsizes: {SIZE[0]} {SIZE[1]} {SIZE[2]}\nspacings: 1 1 1\n"
+                  "encoding: raw\nSegment0_LabelValue:=1\nSegment0_Name:=xylem\n\n")
+        (self.folder / "cells.seg.nrrd").write_bytes(header.encode() + voxels)
+        empty = {"op": "shrink", "group": 1, "distance": 1}  # 30 voxels, one slice
+
+        def said(*operations):
+            ran = self.check("annotate", self.session, "--verbose", "--script",
+                             self.write_script("named.jsonl", operations))
+            return ran.stdout + ran.stderr
+        self.assertIn("30 voxels of group 1 (xylem) erased", said(
+            {"op": "load", "path": self.path("cells.seg.nrrd")}, empty))
+        self.assertIn("group 1 (xylem) erased", said({"op": "undo"}, empty, {"op": "save"}))  # another run has it, too
+        self.assertRegex(said({"op": "undo", "count": 2}, {"op": "load", "path": self.path("other.mask")},
+                              {"op": "shrink", "group": 3, "distance": 1}), r"voxels of group 3 erased")
+
+    def test_an_unknown_operation_is_refused_with_all_that_there_are(self):
+        said = self.annotate({"op": "lode", "path": "x"}, status=1)
+        for name in ("paint", "threshold", "load"):
+            self.assertIn(f'"{name}"', said)
+
     def test_what_cannot_be_loaded_is_refused_by_its_line_and_earlier_lines_stay(self):
         script = self.folder / "script.jsonl"
         first = {"op": "load", "what": "mask", "path": self.path("other.mask")}
