@@ -56,8 +56,8 @@ class JsonNode;
 
 /// The names of operations, the more common ones first.
 std::vector<std::string_view> script_op_names();
-/// Parses a line whose key "op" must be one of `script_op_names`. Fails like `read_script`. `others`: operations that the
-/// caller reads itself, and which the message about an unknown one lists, too.
+/// Parses a line whose key "op" must be one of `script_op_names`. Fails like `read_script`. `others`: operations that
+/// the caller reads itself, and which the message about an unknown one lists, too.
 ScriptOp read_script_op(const JsonNode& line, std::span<const std::string_view> others = {});
 /// The line that parses as this operation.
 std::string line_of(const ScriptOp& op);
