@@ -12,6 +12,7 @@
 #include "engine/base/atomic_file.h"
 #include "engine/base/text.h"
 #include "engine/session/label_looks.h"
+#include "engine/tasks/surface_task.h"
 #include "engine/tasks/task_output.h"
 
 namespace shvr {
@@ -76,6 +77,17 @@ std::string pattern_text(const ExportTask& task, const AnnotationView& annotatio
     return pattern_csv(measure_patterns(annotation.trace, sections, space, axis), space.unit);
 }
 
+SurfaceTask surface_task_of(const ExportTask& task)
+{
+    return {.surface = task.surface,
+            .groups = task.surface_groups,
+            .smooth = task.smooth,
+            .decimate = task.decimate,
+            .space = task.space,
+            .budget_host_mib = task.budget_host_mib,
+            .names = task.names};
+}
+
 std::filesystem::path plain(const std::filesystem::path& path)
 {
     return std::filesystem::absolute(path).lexically_normal();
@@ -103,6 +115,12 @@ void fields(Fields& f, ExportTask& task)
            {.meaning = "for metrics, a flower head's axis where its trace does not determine it: a point and the "
                        "direction towards the florets, X,Y,Z,DX,DY,DZ, as traces are exported",
             .standard = "fitted to the trace"});
+    f.path("surface", task.surface,
+           {.meaning = "painted groups as closed surfaces: .stl (a file for each group), .ply, .obj, .glb",
+            .standard = "none"});
+    f.text("surface_groups", task.surface_groups,
+           {.meaning = "groups of surface, such as 3 or 1+4", .standard = "all that are painted"});
+    surface_form_fields(f, task);
 }
 
 std::vector<std::filesystem::path> replaced_files(const ExportTask& task)
@@ -112,6 +130,7 @@ std::vector<std::filesystem::path> replaced_files(const ExportTask& task)
         std::error_code ignored;
         if (!path.empty() && std::filesystem::exists(path, ignored)) found.push_back(path);
     }
+    for (const std::filesystem::path& path : replaced_files(surface_task_of(task))) found.push_back(path);
     return found;
 }
 
@@ -144,11 +163,9 @@ void check(const ExportTask& task)
         check_output_folder(task.mask);
     else if (!task.mask.empty())
         check_output_place(task.mask);
-    const std::pair<const char*, const std::filesystem::path&> outputs[] = {{"mask", task.mask},
-                                                                            {"offset", task.offset},
-                                                                            {"trace", task.trace},
-                                                                            {"mesh", task.mesh},
-                                                                            {"metrics", task.metrics}};
+    const std::pair<const char*, const std::filesystem::path&> outputs[] = {
+        {"mask", task.mask}, {"offset", task.offset},   {"trace", task.trace},
+        {"mesh", task.mesh}, {"metrics", task.metrics}, {"surface", task.surface}};
     for (const auto& [key, path] : outputs)
         for (const auto& [other, same] : outputs)
             if (&path != &same && !path.empty() && !same.empty() && plain(path) == plain(same))
@@ -161,6 +178,7 @@ void check(const ExportTask& task)
     check_output(name("trace"), task.trace, {".txt", ".swc", ".graphml", ".rsml"});
     check_output(name("mesh"), task.mesh, {".obj", ".ply"});
     check_output(name("metrics"), task.metrics, {".csv"});
+    if (!task.surface.empty()) check(surface_task_of(task));
     for (const auto& [key, text] : {std::pair<const char*, const std::string&>("sections", task.sections),
                                     std::pair<const char*, const std::string&>("axis", task.axis)})
         if (task.metrics.empty() && !text.empty())
@@ -182,6 +200,7 @@ void check(const ExportTask& task, const AnnotationView& annotation)
         check_output_is_not(annotation.volume_path, path);
     if (!task.trace.empty() || !task.mesh.empty()) expect_trace(annotation);
     static_cast<void>(project_labels(task, annotation.project));
+    if (!task.surface.empty()) check(surface_task_of(task), annotation);
 }
 
 ExportResult run(const ExportTask& asked, const AnnotationView& annotation, ProgressReporter& reporter,
@@ -230,6 +249,9 @@ ExportResult run(const ExportTask& asked, const AnnotationView& annotation, Prog
         write_file_atomically(task.metrics, std::as_bytes(std::span(text)));
         note(task.metrics);
     }
+    if (!task.surface.empty())
+        run(surface_task_of(task), annotation, reporter,
+            [&](const SurfaceResult& so_far) { note(so_far.written.back()); });
     return result;
 }
 

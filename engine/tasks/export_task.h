@@ -33,11 +33,17 @@ struct ExportTask {
     std::optional<OmeZarrVersion> version;
     std::string sections;  ///< for `metrics`: the groups of a flower head's parts, parsed by head_sections()
     std::string axis;      ///< for `metrics`: a flower head's axis, parsed by stated_axis()
+    // Surfaces of painted groups, as in SurfaceTask (surface_task.h).
+    std::filesystem::path surface;
+    std::string surface_groups;
+    int smooth = 20;
+    double decimate = 1.0;
+    int64_t budget_host_mib = 0;  ///< memory that surfaces may take; not an option itself
 
     OptionNames names = OptionNames::keys;  ///< how messages name options; not an option itself
 };
 void fields(Fields& f, ExportTask& task);
-/// Returns the existing files that the task would replace.
+/// Returns the existing files that the task would replace. Asks the disk.
 std::vector<std::filesystem::path> replaced_files(const ExportTask& task);
 
 /// The exported data, which must not change until `run` returns.

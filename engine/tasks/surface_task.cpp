@@ -145,14 +145,25 @@ void fields(Fields& f, SurfaceTask& task)
             .standard = "required",
             .is_required = true});
     f.text("groups", task.groups, {.meaning = "groups to write, such as 3 or 1+4", .standard = "all that are painted"});
-    f.whole("smooth", task.smooth, 0, MAX_SURFACE_STEPS,
-            {"steps that smooth surfaces, within half a voxel, with the volumes of groups kept; 0: faces of voxels"});
-    f.number("decimate", task.decimate, {MIN_SURFACE_SHARE, 1.0},
-             {"share of the triangles to keep; vertices of the full surface stay within a voxel of it, and groups that "
-              "touch keep equal borders"});
+    surface_form_fields(f, task);
     f.choice("space", task.space, {"where other programs show the volume, or voxel * spacing"});
     f.whole("budget_host_mib", task.budget_host_mib, 0, MAX_SURFACE_MIB,
             {"memory that it may take, in MiB; 0: three quarters of what the process was given"});
+}
+
+std::vector<std::filesystem::path> replaced_files(const SurfaceTask& task)
+{
+    std::vector<std::filesystem::path> found;
+    if (task.surface.empty()) return found;
+    std::vector<std::filesystem::path> files{task.surface};
+    const bool is_one =
+        !holds_one_surface(task.surface) || (!task.groups.empty() && task.groups.find('+') == std::string::npos);
+    for (int group = 1; group < 256 && !is_one; ++group) files.push_back(file_of_group(task.surface, group));
+    for (const std::filesystem::path& path : files) {
+        std::error_code ignored;
+        if ((is_one || path != task.surface) && std::filesystem::exists(path, ignored)) found.push_back(path);
+    }
+    return found;
 }
 
 void check(const SurfaceTask& task)

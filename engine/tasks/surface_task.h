@@ -24,6 +24,19 @@ struct SurfaceTask {
     OptionNames names = OptionNames::keys;  ///< as in ExportTask
 };
 void fields(Fields& f, SurfaceTask& task);
+/// Returns the existing files that the task would replace, whatever groups are painted. Asks the disk.
+std::vector<std::filesystem::path> replaced_files(const SurfaceTask& task);
+
+/// The fields of how surfaces are made, of SurfaceTask or ExportTask.
+template <class Task>
+void surface_form_fields(Fields& f, Task& task)
+{
+    f.whole("smooth", task.smooth, 0, MAX_SURFACE_STEPS,
+            {"steps that smooth surfaces, within half a voxel, with the volumes of groups kept; 0: faces of voxels"});
+    f.number("decimate", task.decimate, {MIN_SURFACE_SHARE, 1.0},
+             {"share of the triangles of surfaces to keep; vertices of the full surface stay within a voxel of it, and "
+              "groups that touch keep equal borders"});
+}
 
 struct SurfaceResult {
     std::vector<std::string> written;  ///< paths of the written files, in order

@@ -70,6 +70,28 @@ class Export(Seen):
         self.assertEqual(trace.count("<node "), 2, "letters typed into the name act on nothing behind the dialog")
         self.assertEqual((report["undoable"], report["redoable"]), (3, 0))
 
+    def test_surfaces_are_exported_by_a_tick(self):
+        session = self.write_ball()
+        self.check("annotate", session, "--script", self.write_script("s.jsonl", [
+            {"op": "paint", "brush": "fill", "region": "ball", "path": [[32, 32, 32]], "radius": 5, "threshold": 0,
+             "group": 1}, {"op": "save"}]))
+        self.open_scan(session, preferences={"hints_seen": 3})
+        self.press("Ctrl+E")
+        self.see("Writes 2 files to ", WINDOW)
+        self.see("session-surface", WINDOW)
+        # The box to tick is left of the format.
+        x0, y0, _, y1 = self.see_at_rest(".ply", WINDOW)["box"]
+        self.do("mousemove", round(x0 - 1.7 * (y1 - y0)), round((y0 + y1) / 2), "sleep", 0.1, "mousedown", 1, "sleep",
+                0.1, "mouseup", 1, pause_s=0.2)
+        self.see("Writes 3 files to ", WINDOW)
+        self.press("Return")
+        self.see_no_more("Cancel", WINDOW)
+        self.see("Exported ", "Status")
+        self.finish()
+        surface = next(self.folder.glob("*-surface.ply"))
+        faces = int(surface.read_bytes().split(b"element face ")[1].split()[0])
+        self.assertGreater(faces, 500)
+
     def test_a_mistake_is_told_in_the_dialog_and_the_dialog_stays(self):
         self.open_scan(self.write_ball(), preferences={"hints_seen": 3})
         self.press("Ctrl+E")

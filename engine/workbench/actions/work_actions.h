@@ -168,9 +168,12 @@ inline constexpr auto WORK_ACTIONS = std::tuple{
                 return "nothing is traced yet, so there is neither a trace nor a mesh to write";
             if (task.labels && model.volume.format != "ome-zarr")
                 return "labels are written into a project, and this scan is none: import it as one, or name a mask";
-            const bool has_file =
-                std::ranges::any_of(std::array{&task.mask, &task.offset, &task.trace, &task.mesh, &task.metrics},
-                                    [](const auto* path) { return !path->empty(); });
+            const bool is_painted = std::ranges::any_of(model.voxels_by_group.begin() + 1, model.voxels_by_group.end(),
+                                                        [](int64_t voxels) { return voxels > 0; });
+            if (!task.surface.empty() && !is_painted) return "nothing is painted yet, so there is no surface to write";
+            const bool has_file = std::ranges::any_of(
+                std::array{&task.mask, &task.offset, &task.trace, &task.mesh, &task.metrics, &task.surface},
+                [](const auto* path) { return !path->empty(); });
             return has_file || task.labels ? "" : "no file is named; expected at least one to be written";
         }),
     row<ImportTask, TaskRunner>({"import", "Import as project", WORK_GROUP,

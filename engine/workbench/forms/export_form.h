@@ -1,5 +1,5 @@
 #pragma once
-// The dialog Export: where to, and which of mask, trace and measures, each in a format. Pure; any thread.
+// The dialog Export: where to, and which of mask, trace, measures and surfaces, each in a format. Pure; any thread.
 
 #include <span>
 #include <string>
@@ -16,7 +16,7 @@ struct ExportForm {
         std::string ending;  ///< ".nrrd"
     };
     std::string base;  ///< folder and beginning of all names, as typed: "/scans/leaf"
-    Part mask{false, ".nrrd"}, trace{false, ".graphml"}, measures{false, ".csv"};
+    Part mask{false, ".nrrd"}, trace{false, ".graphml"}, measures{false, ".csv"}, surfaces{false, ".ply"};
     ExportTask more;  ///< options under More
 };
 
@@ -32,11 +32,14 @@ struct ExportRow {
 /// Returns the rows, with references into `form`.
 std::vector<ExportRow> rows_of(ExportForm& form, const Model& model);
 
-/// Returns a form that exports all existing annotation, next to the scan. `last`: formats to use again.
+/// Returns a form that exports all existing annotation, next to the scan, but no surfaces, which take longest. `last`:
+/// formats to use again.
 ExportForm suggested_export(const Model& model, const ExportForm& last);
 /// `folder`: where relative names lie.
 ExportTask task_of(const ExportForm& form, const std::filesystem::path& folder);
+/// The number of files that surfaces are written to: one, or one for each group.
+int64_t files_of_surfaces(const ExportForm& form, const Model& model);
 /// Options of the task that the rows cover, so that More leaves them out.
-inline constexpr std::string_view EXPORT_ROWS_COVER[]{"mask", "trace", "metrics"};
+inline constexpr std::string_view EXPORT_ROWS_COVER[]{"mask", "trace", "metrics", "surface"};
 
 }  // namespace shvr::ui

@@ -116,6 +116,7 @@ JobModel TaskRunner::model() const
 
 void TaskRunner::act(const ExportTask& task)
 {
+    ExportTask wanted = task;
     others_.record_settings();
     const Document& document = *document_;
     const shvr::Document& annotation = document.annotator.document();
@@ -131,12 +132,14 @@ void TaskRunner::act(const ExportTask& task)
                               .mask_path = document.annotator.work().mask_of_header()};
     auto snapshot = std::make_shared<AnnotationSnapshot>(view);
     std::vector<std::string> names;
-    for (const std::filesystem::path& path : {task.mask, task.offset, task.trace, task.mesh, task.metrics})
+    for (const auto& path : {wanted.mask, wanted.offset, wanted.trace, wanted.mesh, wanted.metrics, wanted.surface})
         if (!path.empty()) names.push_back(short_name(path));
-    if (task.labels) names.emplace_back("labels");
+    if (wanted.labels) names.emplace_back("labels");
+    if (wanted.budget_host_mib == 0)
+        wanted.budget_host_mib = int64_t(keeper_.preferences().budget_host_mib.value_or(0.0));
     start_writing("exporting " + joined(names, ", "),
-                  [this, task, snapshot](ProgressReporter& reporter) -> Jobs::Completion {
-                      ExportResult result = run(task, snapshot->view(), reporter);
+                  [this, wanted, snapshot](ProgressReporter& reporter) -> Jobs::Completion {
+                      ExportResult result = run(wanted, snapshot->view(), reporter);
                       const double bytes = bytes_of_files(result.written);
                       return [this, bytes, result = std::move(result)] {
                           say(exported_in_words(result.written, bytes) +

@@ -67,8 +67,9 @@ TEST_CASE("an export is given as JSON, and unknown options are refused by name")
     CHECK(task.space == Positions::volume);
     CHECK(task.version == OmeZarrVersion::v0_5);
     CHECK(task.trace.empty());
-    CHECK(to_json(task, "/data") ==
-          R"({"mask":"out.tif","labels":false,"ome_zarr":"0.5","break_loops":false,"space":"volume"})");
+    CHECK(
+        to_json(task, "/data") ==
+        R"({"mask":"out.tif","labels":false,"ome_zarr":"0.5","break_loops":false,"space":"volume","smooth":20,"decimate":1.0})");
     CHECK(from_json<ExportTask>(to_json(ExportTask{}, "/"), "/", "x").version == std::nullopt);
     const auto refusal = [](const char* text) {
         return error_of([&] { static_cast<void>(from_json<ExportTask>(text, "/", "line 3")); });
@@ -77,6 +78,33 @@ TEST_CASE("an export is given as JSON, and unknown options are refused by name")
     CHECK(contains(refusal(R"({"space": "voxels"})"), "key space is \"voxels\"; expected"));
     CHECK(contains(refusal(R"({"labels": 1})"), "key labels is 1"));
     CHECK(contains(refusal("[]"), "line 3"));
+}
+
+TEST_CASE("an export writes surfaces, and states what they replace")
+{
+    const TemporaryFolder folder;
+    const VolumeInfo volume = annotated_volume();
+    Document document = unannotated();
+    const auto voxel = uint16_t(index_in_brick({3, 3, 3}));
+    document.mask.apply({.brick = 0, .runs = {{voxel, voxel, 0, 2}}}, Direction::forwards);
+    const AnnotationView view{volume, document.mask, document.density, document.trace, {}};
+    PlainReporter reporter;
+    ExportTask task{.mask = folder.path / "a.mask", .surface = folder.path / "a.stl", .smooth = 0};
+    CHECK(replaced_files(task).empty());
+    const ExportResult result = run(task, view, reporter);
+    CHECK(result.written ==
+          std::vector<std::string>{(folder.path / "a.mask").string(), (folder.path / "a-2.stl").string()});
+    CHECK(std::filesystem::file_size(folder.path / "a-2.stl") == 84 + 12 * 50);
+    CHECK(replaced_files(task) == std::vector<std::filesystem::path>{task.mask, folder.path / "a-2.stl"});
+    task.surface_groups = "2";
+    CHECK(replaced_files(task) == std::vector<std::filesystem::path>{task.mask});
+    task.surface_groups = "3";
+    CHECK(contains(error_of([&] { check(task, view); }), "group 3 has no painted voxels"));
+    task.surface_groups = "2x";
+    CHECK(contains(error_of([&] { check(task); }), "surface_groups names the groups \"2x\""));
+    task.surface_groups = "";
+    task.surface = task.mask;
+    CHECK(contains(error_of([&] { check(task); }), "mask and surface are both"));
 }
 
 TEST_CASE("every option of an export is documented")
@@ -89,7 +117,8 @@ TEST_CASE("every option of an export is documented")
         CHECK(!option.standard.empty());
     }
     CHECK(names == std::set<std::string>{"mask", "labels", "ome_zarr", "offset", "trace", "break_loops", "mesh",
-                                         "space", "metrics", "sections", "axis"});
+                                         "space", "metrics", "sections", "axis", "surface", "surface_groups", "smooth",
+                                         "decimate"});
 }
 
 TEST_CASE("patterns of flower heads follow the measures where sections are stated, named or in use")

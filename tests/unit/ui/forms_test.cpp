@@ -77,12 +77,12 @@ TEST_CASE("an export suggests all annotation that there is, and writes what is t
     form = suggested_export(world.model, form);
     CHECK(form.base == "/scans/leaf");
     const std::vector<ExportRow> rows = rows_of(form, world.model);
-    REQUIRE(rows.size() == 3);
+    REQUIRE(rows.size() == 4);
     CHECK(rows[0].file == "leaf-mask.nrrd");
     CHECK(rows[0].size == "33 kB");  // one byte for each of 64 x 32 x 16 voxels
     for (const ExportRow& row : rows) {
         CHECK(row.why_not.empty());
-        CHECK(row.part->is_written);
+        CHECK(row.part->is_written == (row.part != &form.surfaces));  // they take longest
     }
     ExportTask task = task_of(form, "/scans");
     CHECK(task.mask == "/scans/leaf-mask.nrrd");
@@ -100,6 +100,58 @@ TEST_CASE("an export suggests all annotation that there is, and writes what is t
     for (const char* unnamed : {"", "/scans/"}) {
         form.base = unnamed;
         CHECK(task_of(form, "/scans").mask.empty());
+    }
+}
+
+TEST_CASE("surfaces are offered where something is painted, with a size that they stay below")
+{
+    Scanned world;
+    ExportForm form = suggested_export(world.model, {});
+    CHECK(rows_of(form, world.model)[3].why_not == "nothing is painted yet");
+    world.model.voxels_by_group[2] = 3;
+    world.model.voxels_by_group[9] = 4;
+    form = suggested_export(world.model, {});
+    CHECK(task_of(form, "/scans").surface.empty());
+    form.surfaces.is_written = true;
+    CHECK(rows_of(form, world.model)[3].file == "leaf-surface.ply");
+    CHECK(task_of(form, "/scans").surface == "/scans/leaf-surface.ply");
+    CHECK(files_of_surfaces(form, world.model) == 1);
+    form.surfaces.ending = ".stl";
+    CHECK(rows_of(form, world.model)[3].file == "leaf-surface-N.stl");
+    CHECK(files_of_surfaces(form, world.model) == 2);
+    form.more.surface_groups = "2";
+    CHECK(files_of_surfaces(form, world.model) == 1);
+
+    // Pairs of voxels side by side, and as many alone.
+    Mask mask(world.volume.size);
+    const auto paint = [&](const Size3& voxel) {
+        const auto at = uint16_t(index_in_brick(voxel));
+        mask.apply({.brick = 0, .runs = {{at, at, 0, 2}}}, Direction::forwards);
+    };
+    for (int64_t i = 0; i < 64; ++i) {
+        paint({i % 8 * 4, i / 8 * 4, 3});
+        if (i % 2 == 0) paint({i % 8 * 4 + 1, i / 8 * 4, 3});
+    }
+    world.model.voxels_by_group[2] = mask.voxels_by_group()[2];
+    world.model.voxels_by_group[9] = 0;
+    const TemporaryFolder folder;
+    const DensityField density(world.volume.size, world.volume.type);
+    for (const char* ending : {".ply", ".stl", ".obj", ".glb"}) {
+        CAPTURE(ending);
+        form.surfaces.ending = ending;
+        form.base = folder.path / "a";
+        ExportTask task = task_of(form, folder.path);
+        task.mask = task.metrics = std::filesystem::path();
+        task.smooth = 0;
+        PlainReporter reporter;
+        const ExportResult result = run(task, {world.volume, mask, density, world.trace, {}}, reporter);
+        REQUIRE(result.written.size() == 1);
+        const std::string words = rows_of(form, world.model)[3].size;
+        REQUIRE(words.starts_with("usually below "));
+        const double bytes = double(std::filesystem::file_size(result.written[0]));
+        const double most = std::stod(words.substr(14)) * (words.ends_with(" kB") ? 1000.0 : 1.0);
+        CHECK(bytes < most);
+        CHECK(bytes > most / 6.0);
     }
 }
 
