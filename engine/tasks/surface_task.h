@@ -41,8 +41,8 @@ void surface_form_fields(Fields& f, Task& task)
 struct SurfaceResult {
     std::vector<std::string> written;  ///< paths of the written files, in order
     std::map<int, int64_t> triangles_by_group;
-    /// Every vertex before decimation is within this distance of the written surface, in the volume's unit. Null
-    /// without decimation.
+    /// Every vertex before decimation is within this distance of the written surface, and every point of this one of
+    /// that before, in the volume's unit. Null without decimation.
     std::optional<double> decimation_error{};
 };
 

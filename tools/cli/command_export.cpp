@@ -257,10 +257,11 @@ void add_export(CLI::App& program)
         ->check(CLI::Range(0, MAX_SURFACE_STEPS))
         ->needs(surface);
     command
-        ->add_option("--decimate", options->surface_task.decimate,
-                     "Share of the triangles of surfaces to keep, such as 0.1; more stay where a vertex of the full "
-                     "surface would be farther than a voxel from it, or a volume would change by 0.4 %, and where "
-                     "three groups meet. Groups that touch keep equal borders")
+        ->add_option(
+            "--decimate", options->surface_task.decimate,
+            "Share of the triangles of surfaces to keep, such as 0.1; more stay where the surface would be farther "
+            "than the shortest side of a voxel from the full one, or a volume would change by 0.4 %, and "
+            "where three groups meet. Groups that touch keep equal borders")
         ->type_name("SHARE")
         ->check(CLI::Range(MIN_SURFACE_SHARE, 1.0))
         ->needs(surface);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <unordered_map>
 
 #include "engine/annotation/meshes/patch_decimation.h"
 #include "engine/base/error.h"
@@ -63,6 +64,7 @@ private:
     {
         // A vertex of the patch is one of each group, since a corner may be a vertex of the one and two of the other.
         std::map<std::pair<uint32_t, uint32_t>, uint32_t> numbers;
+        std::unordered_map<uint32_t, uint32_t> first_of_first, first_of_second;
         std::vector<std::pair<uint32_t, uint32_t>> vertices;
         Patch patch;
         for (const Shared& shared : triangles) {
@@ -72,6 +74,9 @@ private:
                 const auto [found, is_new] = numbers.emplace(both, uint32_t(vertices.size()));
                 if (is_new) {
                     vertices.push_back(both);
+                    patch.same[0].push_back(first_of_first.emplace(both.first, found->second).first->second);
+                    if (pair.second != 0)
+                        patch.same[1].push_back(first_of_second.emplace(both.second, found->second).first->second);
                     patch.positions.push_back(meshes_[pair.first].vertices[both.first] * options_.spacing);
                 }
                 t[corner] = found->second;
@@ -79,10 +84,11 @@ private:
             patch.triangles.push_back(t);
         }
         numbers.clear();
+        first_of_first = first_of_second = {};
         const std::vector<glm::dvec3> before = patch.positions;
         const double error = decimate(patch,
                                       {.triangles = size_t(std::ceil(options_.share * double(triangles.size()))),
-                                       .error = std::max({options_.spacing.x, options_.spacing.y, options_.spacing.z}),
+                                       .error = std::min({options_.spacing.x, options_.spacing.y, options_.spacing.z}),
                                        .may_change = [&](double change) { return may_change(pair, change); }},
                                       progress);
         for (size_t i = 0; i < vertices.size(); ++i) {

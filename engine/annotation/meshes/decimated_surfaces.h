@@ -26,8 +26,8 @@ public:
     void for_each_triangle(uint8_t group, const GroupSurfaces::VisitTriangle& visit,
                            const Progress& progress = {}) const;
 
-    /// Every vertex of the full surfaces is within this distance of the coarse ones, in the unit of the spacing. It is
-    /// at most the longest side of a voxel.
+    /// Every vertex of the full surfaces is within this distance of the coarse ones, and every point of the coarse ones
+    /// within it of the full ones, in the unit of the spacing. It is at most the shortest side of a voxel.
     double error() const { return error_; }
 
 private:

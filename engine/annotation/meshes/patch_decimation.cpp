@@ -7,53 +7,14 @@
 #include <queue>
 #include <tuple>
 
+#include "engine/annotation/meshes/quadric.h"
+#include "engine/annotation/meshes/surface_distance.h"
+
 namespace shvr {
 
 namespace {
 
 constexpr uint32_t GONE = UINT32_MAX;
-/// The sum of squared distances to planes.
-struct Quadric {
-    glm::dmat3 matrix{0.0};
-    glm::dvec3 linear{0.0};
-    double constant = 0.0;
-
-    void add(const glm::dvec3& normal, const glm::dvec3& point)
-    {
-        const double offset = -glm::dot(normal, point);
-        matrix += glm::outerProduct(normal, normal);
-        linear += offset * normal;
-        constant += offset * offset;
-    }
-    Quadric& operator+=(const Quadric& other)
-    {
-        matrix += other.matrix;
-        linear += other.linear;
-        constant += other.constant;
-        return *this;
-    }
-    double at(const glm::dvec3& p) const
-    {
-        return std::max(0.0, glm::dot(p, matrix * p) + 2.0 * glm::dot(linear, p) + constant);
-    }
-};
-
-/// The squared distance of a point from a triangle (Ericson 2005, 5.1.5).
-double squared_distance(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)
-{
-    const auto squared = [&](const glm::dvec3& nearest) { return glm::dot(p - nearest, p - nearest); };
-    const glm::dvec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-    const double d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap), d3 = glm::dot(ab, bp), d4 = glm::dot(ac, bp),
-                 d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
-    if (d1 <= 0.0 && d2 <= 0.0) return squared(a);
-    if (d3 >= 0.0 && d4 <= d3) return squared(b);
-    if (d6 >= 0.0 && d5 <= d6) return squared(c);
-    const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
-    if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return squared(a + d1 / (d1 - d3) * ab);
-    if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return squared(a + d2 / (d2 - d6) * ac);
-    if (va <= 0.0 && d4 >= d3 && d5 >= d6) return squared(b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b));
-    return squared(a + (vb * ab + vc * ac) / (va + vb + vc));
-}
 
 struct Collapse {
     double order = 0.0;  ///< cheapest first
@@ -73,10 +34,13 @@ public:
           triangles_(patch.triangles),
           limits_(limits),
           origin_(middle()),
-          before_(patch.positions),
+          before_(patch.positions, patch.triangles, limits.error),
           is_attached_(patch.positions.size()),
-          attached_(patch.triangles.size())
+          attached_(patch.triangles.size()),
+          is_moved_(patch.triangles.size())
     {
+        for (const std::vector<uint32_t>& same : patch.same)
+            if (!same.empty()) sides_.emplace_back(same);
         stars_.resize(positions_.size());
         for (uint32_t i = 0; i < triangles_.size(); ++i)
             for (int corner = 0; corner < 3; ++corner) stars_[triangles_[i][corner]].push_back(i);
@@ -113,11 +77,25 @@ public:
             else if (is_allowed(now) && attach(now))
                 left -= carry_out(now);
         }
+        const double error = measure_error(progress);
         std::erase_if(triangles_, [](const glm::uvec3& t) { return t.x == GONE; });
-        return std::sqrt(squared_error_);
+        return error;
     }
 
 private:
+    /// How the vertices of the patch are those of a mesh that it is a part of: at its border, one may be several.
+    struct Side {
+        explicit Side(const std::vector<uint32_t>& same) : name(same), next(same.size())
+        {
+            for (uint32_t i = 0; i < next.size(); ++i) {
+                next[i] = i;
+                if (name[i] != i) std::swap(next[i], next[name[i]]);
+            }
+        }
+        const std::vector<uint32_t>& name;  ///< the first vertex that is the same
+        std::vector<uint32_t> next;         ///< the next one that is the same, in a ring
+    };
+
     glm::dvec3 middle() const
     {
         glm::dvec3 sum(0.0);
@@ -148,9 +126,43 @@ private:
         const glm::uvec3& t = triangles_[triangle];
         return t.x == vertex || t.y == vertex || t.z == vertex;
     }
-    bool has_triangle_with(uint32_t vertex, uint32_t a, uint32_t b) const
+    bool is_border(uint32_t a, uint32_t b) const
     {
-        return std::ranges::any_of(stars_[vertex], [&](uint32_t i) { return holds(i, a) && holds(i, b); });
+        return std::ranges::count_if(stars_[a], [&](uint32_t i) { return holds(i, b); }) == 1;
+    }
+
+    /// Calls `visit(triangle)` for those at the vertex in the mesh of a side, as far as they are in this patch.
+    template <class Visit>
+    void for_each_at(uint32_t vertex, const Side& side, const Visit& visit) const
+    {
+        uint32_t one = vertex;
+        do {
+            for (const uint32_t i : stars_[one]) visit(i);
+            one = side.next[one];
+        } while (one != vertex);
+    }
+    /// The vertices around a vertex in that mesh, by name, ascending.
+    std::vector<uint32_t> around(uint32_t vertex, const Side& side) const
+    {
+        std::vector<uint32_t> found;
+        for_each_at(vertex, side, [&](uint32_t i) {
+            for (int corner = 0; corner < 3; ++corner)
+                if (const uint32_t name = side.name[triangles_[i][corner]]; name != side.name[vertex])
+                    found.push_back(name);
+        });
+        std::ranges::sort(found);
+        found.erase(std::unique(found.begin(), found.end()), found.end());
+        return found;
+    }
+    bool has_triangle_with(uint32_t vertex, uint32_t a, uint32_t b, const Side& side) const
+    {
+        bool found = false;
+        for_each_at(vertex, side, [&](uint32_t i) {
+            const glm::uvec3& t = triangles_[i];
+            const std::array names{side.name[t.x], side.name[t.y], side.name[t.z]};
+            found = found || (std::ranges::count(names, a) == 1 && std::ranges::count(names, b) == 1);
+        });
+        return found;
     }
 
     /// Calls `visit(triangle, corner)` for the triangles that have exactly one of the two vertices, at that corner.
@@ -226,10 +238,7 @@ private:
         const std::vector<uint32_t> near_from = around(from), near_to = around(to);
         std::vector<uint32_t> common;
         std::ranges::set_intersection(near_from, near_to, std::back_inserter(common));
-        // The link condition: exactly the two opposite vertices, and no triangle of both sides would become another's
-        // double.
-        if (common.size() != 2) return false;
-        if (has_triangle_with(from, common[0], common[1]) && has_triangle_with(to, common[0], common[1])) return false;
+        if (common.size() != 2 || !keeps_manifold(from, to, common)) return false;
         // No new edge between vertices of the border: another patch may have it already.
         if (fixed_[to])
             for (const uint32_t vertex : near_from)
@@ -245,11 +254,54 @@ private:
         if (!keeps_sides) return false;
         return true;
     }
+    /// The link condition in each mesh: the only common neighbours are the two opposite vertices, and no triangles
+    /// become each other's double.
+    bool keeps_manifold(uint32_t from, uint32_t to, const std::vector<uint32_t>& common) const
+    {
+        // Nor one that is the double of another patch's: a patch of three triangles within three sides stays.
+        if (stars_[from].size() == 3 && is_border(to, common[0]) && is_border(to, common[1]) &&
+            is_border(common[0], common[1]))
+            return false;
+        for (const Side& side : sides_) {
+            const std::vector<uint32_t> near_from = around(from, side), near_to = around(to, side);
+            std::vector<uint32_t> both;
+            std::ranges::set_intersection(near_from, near_to, std::back_inserter(both));
+            if (both.size() != 2) return false;
+            if (has_triangle_with(from, both[0], both[1], side) && has_triangle_with(to, both[0], both[1], side))
+                return false;
+        }
+        return true;
+    }
     double change_of_volume(const Collapse& collapse) const
     {
         const glm::dvec3& base = positions_[collapse.from];
         const Volume volume = volume_around(collapse.from, collapse.to, base);
         return (glm::dot(volume.normal, collapse.place - base) - volume.held) / 6.0;
+    }
+
+    /// Whether the triangles that there will be are near the patch as it was given.
+    bool is_near(const Collapse& collapse) const
+    {
+        uint32_t nearest = stars_[collapse.from].front();
+        bool reaches = before_.from(collapse.place, limits_.error, nearest) <= limits_.error;
+        for_each_moved(collapse.from, collapse.to, [&](uint32_t i, int corner) {
+            const glm::uvec3& t = triangles_[i];
+            reaches = reaches && before_.reaches({collapse.place, positions_[t[(corner + 1) % 3]],
+                                                  positions_[t[(corner + 2) % 3]]});
+        });
+        return reaches;
+    }
+    /// The largest distance in both directions, rounded upwards.
+    double measure_error(const Progress& progress) const
+    {
+        double least = std::sqrt(squared_error_), most = least;
+        for (size_t i = 0; i < triangles_.size(); ++i) {
+            if (i % 4096 == 0) tell(progress, 1.0);
+            const glm::uvec3& t = triangles_[i];
+            if (t.x == GONE || is_moved_[i] == 0) continue;
+            most = std::max(most, before_.farthest({positions_[t.x], positions_[t.y], positions_[t.z]}, least));
+        }
+        return most;
     }
 
     /// Attaches all vertices that the triangles around the two stood for to the nearest triangles of those that there
@@ -272,16 +324,16 @@ private:
             double least = std::numeric_limits<double>::infinity();
             for_each_moved(collapse.from, collapse.to, [&](uint32_t triangle, int corner) {
                 const glm::uvec3& t = triangles_[triangle];
-                const double distance =
-                    squared_distance(before_[points[i]], collapse.place, positions_[t[(corner + 1) % 3]],
-                                     positions_[t[(corner + 2) % 3]]);
+                const double distance = squared_distance(
+                    before_.positions()[points[i]],
+                    {collapse.place, positions_[t[(corner + 1) % 3]], positions_[t[(corner + 2) % 3]]});
                 if (!(distance < least)) return;
                 least = distance;
                 nearest[i] = triangle;
             });
             worst = std::max(worst, least);
         }
-        if (!(worst <= limits_.error * limits_.error)) return false;
+        if (!(worst <= limits_.error * limits_.error) || !is_near(collapse)) return false;
         if (limits_.may_change && !limits_.may_change(change_of_volume(collapse))) return false;
         squared_error_ = std::max(squared_error_, worst);
         for (const uint32_t i : changed) attached_[i].clear();
@@ -311,6 +363,7 @@ private:
         }
         std::vector<uint32_t>().swap(stars_[from]);
         positions_[to] = collapse.place;
+        for (const uint32_t i : stars_[to]) is_moved_[i] = 1;
         quadrics_[to] += quadrics_[from];
         ++versions_[to];
         for (const uint32_t vertex : around(to)) offer(to, vertex);
@@ -321,9 +374,11 @@ private:
     std::vector<glm::uvec3>& triangles_;
     const PatchLimits& limits_;
     glm::dvec3 origin_;  ///< quadrics are relative to it
-    std::vector<glm::dvec3> before_;
+    SurfaceDistance before_;
+    std::vector<Side> sides_;
     std::vector<uint8_t> is_attached_;             ///< for each vertex: as a point of `attached_`
     std::vector<std::vector<uint32_t>> attached_;  ///< for each triangle, vertices that were near it
+    std::vector<uint8_t> is_moved_;                ///< for each triangle
     double squared_error_ = 0.0;
     std::vector<std::vector<uint32_t>> stars_;
     std::vector<uint8_t> fixed_;

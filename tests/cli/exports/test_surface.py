@@ -190,7 +190,7 @@ class Surface(CliTest):
             if (x - 12) ** 2 / 4 + (y - 10) ** 2 + (z - 8) ** 2 < 36:
                 mask[x + 24 * (y + 20 * z)] = 1 if x < 12 else 2
         self.use(size, bytes(mask))
-        voxel_mm = max(SPACING)
+        voxel_mm = min(SPACING)
         full, coarse = {}, {}
         for group in (1, 2):
             file = self.folder / f"{group}.ply"

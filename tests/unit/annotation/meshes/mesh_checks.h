@@ -58,9 +58,16 @@ TestMesh mesh_of(Surfaces& surfaces, uint8_t group)
     return mesh;
 }
 
-/// Each edge is in two triangles, once in each direction; the triangles at each vertex are one ring.
+/// Each edge is in two triangles, once in each direction; the triangles at each vertex are one ring; no two triangles
+/// have the same vertices.
 inline void check_closed_manifold(const TestMesh& mesh)
 {
+    std::vector<std::array<uint32_t, 3>> triangles;
+    for (const glm::uvec3& t : mesh.triangles) {
+        std::ranges::sort(triangles.emplace_back(std::array{t.x, t.y, t.z}));
+    }
+    std::ranges::sort(triangles);
+    CHECK(std::ranges::adjacent_find(triangles) == triangles.end());
     std::vector<std::pair<uint32_t, uint32_t>> edges;
     std::vector<std::array<uint32_t, 3>> around;  // vertex, from, to: the opposite edge of each triangle at it
     for (const glm::uvec3& t : mesh.triangles)
