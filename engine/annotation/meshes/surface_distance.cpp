@@ -10,7 +10,7 @@ namespace shvr {
 namespace {
 
 /// Pieces of a triangle within this share of the reach are not cut further.
-constexpr double SMALLEST_PIECE = 0.25;
+constexpr double MIN_PIECE_RADIUS = 0.25;
 
 struct Piece {
     TriangleCorners corners;
@@ -142,7 +142,7 @@ bool SurfaceDistance::reaches(const TriangleCorners& triangle) const
             if (distance <= enough) continue;
             if (distance > reach_) return false;
             if (squared_bound(piece.corners, piece.nearest) <= reach_ * reach_) continue;
-            if (piece.radius < SMALLEST_PIECE * reach_) return false;
+            if (piece.radius < MIN_PIECE_RADIUS * reach_) return false;
         }
         cut(piece, pieces);
     }
@@ -163,7 +163,7 @@ double SurfaceDistance::farthest(const TriangleCorners& triangle, double& least)
             least = std::max(least, distance);
             const double bound =
                 std::min(distance + piece.radius, std::sqrt(squared_bound(piece.corners, piece.nearest)));
-            if (bound <= least || piece.radius <= SMALLEST_PIECE * reach_) {
+            if (bound <= least || piece.radius <= MIN_PIECE_RADIUS * reach_) {
                 most = std::max(most, std::min(reach_, bound));
                 continue;
             }

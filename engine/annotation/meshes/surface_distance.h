@@ -42,8 +42,8 @@ private:
     std::vector<glm::dvec3> positions_;
     std::vector<glm::uvec3> triangles_;
     double reach_;
-    glm::dvec3 half_{0.0};                ///< of the largest box of a triangle
-    glm::dvec3 origin_{0.0}, side_{1.0};  ///< of the cells
+    glm::dvec3 half_{0.0};                ///< half the size of the largest box of a triangle
+    glm::dvec3 origin_{0.0}, side_{1.0};  ///< corner of cell 0, size of each cell
     std::vector<uint32_t> first_;         ///< for each bucket of cells, its first one in `sorted_`; then their end
     std::vector<uint32_t> sorted_;        ///< triangles by the cell that their box has its middle in
 };
