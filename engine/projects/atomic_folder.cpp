@@ -1,16 +1,17 @@
 #include "engine/projects/atomic_folder.h"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
+#include <utility>
 
 #include "engine/base/atomic_file.h"
 #include "engine/base/atomic_writer.h"
 #include "engine/base/error.h"
+#include "engine/base/machine/folder_lock.h"
 #include "engine/projects/part_folder.h"
 
 namespace shvr {
@@ -45,12 +46,10 @@ void make_folder(const fs::path& folder, const fs::path& target)
 
 FileDescriptor locked(const fs::path& folder, const fs::path& target)
 {
-    FileDescriptor descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-    if (!descriptor) refuse_folder(target, errno);
-    // Other errors are ignored: some network file systems do not support locks.
-    if (::flock(descriptor.number(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-        fail(target.string(), ": another process is writing it; expected no other: wait until it ends");
-    return descriptor;
+    std::optional<FileDescriptor> lock = lock_folder(folder);
+    if (lock) return std::move(*lock);
+    if (errno != EWOULDBLOCK) refuse_folder(target, errno);
+    fail(target.string(), ": another process is writing it; expected no other: wait until it ends");
 }
 
 /// Removes everything in the folder.
@@ -58,6 +57,7 @@ void clear_folder(const fs::path& folder, const fs::path& target)
 {
     std::error_code error;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+        if (entry.path().filename() == FOLDER_LOCK) continue;
         fs::remove_all(entry.path(), error);
         if (error) break;
     }
@@ -114,10 +114,10 @@ fs::path move_to_old_name(const fs::path& folder, const fs::path& path)
 void clear_remains(const fs::path& target)
 {
     const fs::path container = container_of(link_target(plain_path(target)));
-    const FileDescriptor folder(::open(container.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-    if (!folder || ::flock(folder.number(), LOCK_EX | LOCK_NB) != 0) return;
-    std::error_code ignored;
-    fs::remove_all(container, ignored);
+    if (!is_occupied(container)) return;
+    std::optional<FileDescriptor> lock = lock_folder(container);
+    if (!lock) return;
+    remove_locked_folder(container, lock);
 }
 
 AtomicFolder::AtomicFolder(const fs::path& target)
@@ -144,11 +144,7 @@ AtomicFolder::~AtomicFolder()
 /// Fails if the folder was moved during writing, after removing the new folders that writing has made at the old place.
 void AtomicFolder::expect_in_place()
 {
-    struct stat held {
-    }, found{};
-    const bool is_held = ::fstat(lock_->number(), &held) == 0;
-    const bool is_found = ::stat(container_.c_str(), &found) == 0;
-    if (is_held && is_found && held.st_dev == found.st_dev && held.st_ino == found.st_ino) return;
+    if (is_lock_of(*lock_, container_)) return;
     remove_remains();
     // rmdir() removes only empty folders: here IMAGE/labels and the project's folder.
     ::rmdir(target_.parent_path().c_str());
@@ -245,9 +241,7 @@ void AtomicFolder::move_out(const fs::path& inside) const
 /// Removes the hidden folder. Files that cannot be removed do no harm, since the next writer deletes them.
 void AtomicFolder::remove_remains()
 {
-    std::error_code ignored;
-    if (lock_) fs::remove_all(container_, ignored);
-    lock_.reset();
+    if (lock_) remove_locked_folder(container_, lock_);
     unfinished_.reset();
 }
 

@@ -1,15 +1,16 @@
 #include "engine/projects/part_folder.h"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <utility>
 
 #include "engine/base/error.h"
+#include "engine/base/machine/folder_lock.h"
 #include "engine/projects/foreign_content.h"
 
 namespace shvr {
@@ -47,11 +48,9 @@ void make_folder(const fs::path& path)
 
 FileDescriptor locked(const fs::path& folder)
 {
-    FileDescriptor descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-    if (!descriptor) fail(folder.string(), ": cannot be opened: ", reason_of(errno));
-    if (::flock(descriptor.number(), LOCK_EX | LOCK_NB) == 0) return descriptor;
-    // Works without a lock on network file systems that do not support locks.
-    if (errno != EWOULDBLOCK) return descriptor;
+    std::optional<FileDescriptor> lock = lock_folder(folder);
+    if (lock) return std::move(*lock);
+    if (errno != EWOULDBLOCK) fail(folder.string(), ": cannot be opened: ", reason_of(errno));
     fail(folder.string(),
          ": another process is importing into it; expected no other: wait until it ends, or choose another name");
 }
@@ -98,6 +97,7 @@ void remove_content(const fs::path& folder)
 {
     std::error_code error;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+        if (entry.path().filename() == FOLDER_LOCK) continue;
         fs::remove_all(entry.path(), error);
         if (error) fail(entry.path().string(), ": cannot be removed: ", error.message());
     }
@@ -115,7 +115,7 @@ PartFolder::PartFolder(const fs::path& target, bool overwrites)
     if (is_there(state())) return;
     std::error_code error;
     for (const fs::directory_entry& entry : fs::directory_iterator(part_, error)) {
-        if (entry.path().filename() == "shvr") continue;
+        if (entry.path().filename() == "shvr" || entry.path().filename() == FOLDER_LOCK) continue;
         fail(part_.string(),
              ": is not the remainder of an import; expected no such folder: move it, or choose another name");
     }
@@ -176,7 +176,9 @@ void PartFolder::finish()
         refuse_write(target_, errno);
     }
     part_ = target_;
+    lock_.reset();            // NFS cannot remove a file that is open
     std::error_code ignored;  // a remaining state does no harm
+    fs::remove(target_ / FOLDER_LOCK, ignored);
     fs::remove(state(), ignored);
     fs::remove(state().parent_path(), ignored);  // removes it only if it is empty
     const FileDescriptor parent(::open(target_.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
@@ -189,9 +191,7 @@ void PartFolder::finish()
 
 void PartFolder::abandon()
 {
-    if (part_ == target_) return;
-    std::error_code ignored;
-    fs::remove_all(part_, ignored);
+    if (part_ != target_) remove_locked_folder(part_, lock_);
 }
 
 fs::path plain_path(const fs::path& path)

@@ -14,6 +14,7 @@ import sys
 import tempfile
 import time
 import unittest
+import unittest.mock
 from pathlib import Path
 
 from harness import ENVIRONMENT, IS_SLOW, SHVR, CliTest, Volume, run
@@ -359,11 +360,11 @@ class EndingEarly(CliTest):
         for name in ("project", "project.part"):
             shutil.rmtree(self.folder / name, ignore_errors=True)
 
-    def start(self, **options):
+    def start(self, more={}, **options):
         # A signal that a test sends is no fault for a sanitizer to report.
-        environment = dict(ENVIRONMENT)
+        environment = {**ENVIRONMENT, **more}
         for name in ("ASAN_OPTIONS", "TSAN_OPTIONS"):
-            environment[name] = os.environ.get(name, "") + ":handle_segv=0"
+            environment[name] = environment.get(name, os.environ.get(name, "")) + ":handle_segv=0"
         return subprocess.Popen([SHVR, "import", *map(str, self.arguments)], stdout=subprocess.PIPE,
                                 stderr=subprocess.PIPE, text=True, env=environment, **options)
 
@@ -490,17 +491,28 @@ class EndingEarly(CliTest):
             subprocess.run(["umount", disk], check=True)
 
     def test_two_at_once_are_one_and_a_sentence(self):
-        process = self.start()
+        self.check_two_at_once({})
+
+    # Kind (bad input and lost work): two imports of one name on a network file system, which locks files and no folders
+    def test_two_at_once_where_only_files_have_locks(self):
+        self.check_two_at_once({"LD_PRELOAD": str(Path(SHVR).resolve().parent / "stubs" / "libno_locks.so"),
+                                "SHVR_LOCKS": "files", "ASAN_OPTIONS": "verify_asan_link_order=0"})
+
+    def check_two_at_once(self, more):
+        process = self.start(more)
         self.wait_for_chunks(process, 2)
         os.kill(process.pid, signal.SIGSTOP)
         try:
             if (self.folder / "project.part").exists():
-                self.check_refused("import", *self.arguments, says=["another process is importing into it"])
+                with unittest.mock.patch.dict(ENVIRONMENT, more):
+                    self.check_refused("import", *self.arguments, says=["another process is importing into it"])
         finally:
             os.kill(process.pid, signal.SIGCONT)
         process.communicate(timeout=60)
         self.assertEqual(process.returncode, 0)
         self.assertEqual(content_of(self.folder / "project"), self.expected)
+        self.assertEqual(sorted(path.name for path in self.folder.glob(".*")), [])
+        self.assertFalse((self.folder / "project.part").exists())
 
 
 class Usage(CliTest):

@@ -1,6 +1,7 @@
 // A file system whose locks do not work, loaded before the C library (LD_PRELOAD). SHVR_LOCKS, read at each call:
 // ENOSYS, ENOLCK or ENOTSUP is the reason for which every lock is refused; with "hollow" every lock is granted, also a
-// second one. SHVR_HOST is the name of the computer.
+// second one; with "files" files that are open for writing can be locked, and nothing else, as on NFS. SHVR_HOST is the
+// name of the computer.
 
 #include <array>
 #include <cerrno>
@@ -21,7 +22,7 @@ Function* next(const char* name)
     return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
 }
 
-enum class Locks { work, fail, are_hollow };
+enum class Locks { work, fail, are_hollow, of_files };
 
 /// Sets errno if they fail.
 Locks locks()
@@ -29,6 +30,7 @@ Locks locks()
     const char* const chosen = std::getenv("SHVR_LOCKS");
     if (!chosen || !*chosen) return Locks::work;
     if (std::strcmp(chosen, "hollow") == 0) return Locks::are_hollow;
+    if (std::strcmp(chosen, "files") == 0) return Locks::of_files;
     errno = std::strcmp(chosen, "ENOSYS") == 0 ? ENOSYS : std::strcmp(chosen, "ENOLCK") == 0 ? ENOLCK : ENOTSUP;
     return Locks::fail;
 }
@@ -43,7 +45,7 @@ bool is_about_locks(int command)
 int call(const char* name, int file, int command, void* argument)
 {
     const Locks how = is_about_locks(command) ? locks() : Locks::work;
-    if (how == Locks::work) return next<int(int, int, ...)>(name)(file, command, argument);
+    if (how == Locks::work || how == Locks::of_files) return next<int(int, int, ...)>(name)(file, command, argument);
     if (how == Locks::fail) return -1;
     if (command == F_GETLK || command == F_OFD_GETLK) static_cast<struct flock*>(argument)->l_type = F_UNLCK;
     return 0;
@@ -77,7 +79,11 @@ int fcntl64(int file, int command, ...)
 int flock(int file, int operation) noexcept
 {
     const Locks how = locks();
-    if (how == Locks::work) return next<int(int, int)>("flock")(file, operation);
+    if (how == Locks::of_files && (next<int(int, int, ...)>("fcntl")(file, F_GETFL, 0) & O_ACCMODE) == O_RDONLY) {
+        errno = EBADF;
+        return -1;
+    }
+    if (how == Locks::work || how == Locks::of_files) return next<int(int, int)>("flock")(file, operation);
     return how == Locks::fail ? -1 : 0;
 }
 
