@@ -125,21 +125,29 @@ void Viewport::press(const ButtonEvent& event, const When& when, const Model& mo
     if (gesture_ != Gesture::press && gesture_ != Gesture::paint) click_.reset();
 }
 
-/// Takes hold of a handle of the clip box, if the box is shown and a handle is there.
+/// Takes hold of a handle of the oblique cutting plane or the clip box, if one is shown there.
 bool Viewport::takes_handle(const ButtonEvent& event, const Model& model)
 {
-    if (!model.session.view.cut_box || event.mods != 0 || pane_ >= model.panes.size()) return false;
+    const ViewSettings& view = model.session.view;
+    if (event.mods != 0 || pane_ >= model.panes.size()) return false;
     cut_before_ = model.session.cut;
-    handle_ = handle_at(cut_handles(model.panes[pane_].pane, cut_before_, model.volume), in_pane(event.at, model));
-    return handle_.has_value();
+    const Pane& pane = model.panes[pane_].pane;
+    const glm::dvec2 pixel = in_pane(event.at, model);
+    plane_handle_.reset();
+    handle_.reset();
+    if (view.plane_handles) plane_handle_ = plane_handle_at(plane_handles(pane, cut_before_, model.volume), pixel);
+    if (view.cut_box) handle_ = handle_at(cut_handles(pane, cut_before_, model.volume), pixel);
+    return plane_handle_ || handle_;
 }
 
-/// Moves the face of the clip box that is held.
+/// Moves what is held: the oblique cutting plane, or a face of the clip box.
 void Viewport::drag_handle(const glm::dvec2& pixel, const Model& model, Actions& actions) const
 {
     if (pane_ >= model.panes.size()) return;
-    const CutBox cut =
-        dragged(cut_before_, *handle_, model.panes[pane_].pane, model.volume, in_pane(pressed_, model), pixel);
+    const Pane& pane = model.panes[pane_].pane;
+    const glm::dvec2 from = in_pane(pressed_, model);
+    const CutBox cut = plane_handle_ ? dragged(cut_before_, *plane_handle_, pane, model.volume, from, pixel)
+                                     : dragged(cut_before_, *handle_, pane, model.volume, from, pixel);
     set(actions, model, [&](Session& s) { s.cut = cut; });
 }
 

@@ -21,7 +21,8 @@
 // turn tool puts it there (not with the keys of the thesis); Ctrl + left changes the contrast, and so does the right
 // button with all tools but turn. With the keys of the thesis, the right button paints in the turn tool.
 //
-// While the clip box is shown (`view.cut_box`), the left button without modifiers drags its handles (cut_handles.h).
+// The left button without modifiers drags the handles of the clip box (cut_handles.h), while that is shown
+// (`view.cut_box`), and those of the oblique cutting plane (plane_handles.h).
 //
 // While the window of operations shows a cut, a drag with the left button draws its outline (outline_tool.h); Ctrl
 // changes between lasso and rectangle.
@@ -31,6 +32,7 @@
 #include <optional>
 
 #include "engine/workbench/sight/cut_handles.h"
+#include "engine/workbench/sight/plane_handles.h"
 #include "ui/panels/panels.h"
 #include "ui/window.h"
 
@@ -65,7 +67,7 @@ private:
         node,     ///< moves the pressed node
         cross,    ///< moves the cross of the slices
         outline,  ///< draws the outline of a cut
-        cut,      ///< moves a face of the clip box
+        cut,      ///< moves a face of the clip box, or the oblique cutting plane
         measure,  ///< the other end of a distance
         contrast
     };
@@ -95,9 +97,10 @@ private:
     int button_ = 0;
     glm::dvec2 last_{0.0}, pressed_{0.0};
     std::optional<uint32_t> pressed_node_;
-    std::optional<CutHandle> handle_;  ///< handle of the clip box that is held
-    CutBox cut_before_;                ///< the box before the drag
-    bool was_elsewhere_ = true;        ///< at the last motion, the pointer was outside the picture
+    std::optional<CutHandle> handle_;          ///< handle of the clip box that is held
+    std::optional<PlaneHandle> plane_handle_;  ///< handle of the oblique cutting plane that is held
+    CutBox cut_before_;                        ///< the cut before the drag
+    bool was_elsewhere_ = true;                ///< at the last motion, the pointer was outside the picture
     std::optional<Pointer> pointer_;
     double pressed_s_ = 0.0;              ///< latest time of the left button's press
     bool is_second_ = false;              ///< the press is the second of a double click

@@ -68,6 +68,7 @@ struct ViewSettings {
     bool meshes = true;           ///< the trace, surfaces and the probe's ball
     bool cut_box = false;         ///< draws the edges of the box that remains after cutting
     std::optional<uint8_t> solo;  ///< if set, only this group and its descendants are drawn; 0: only unpainted voxels
+    bool plane_handles = true;    ///< the window draws handles for the oblique cutting plane, where there is one
     bool operator==(const ViewSettings&) const = default;
 };
 

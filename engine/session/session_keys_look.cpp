@@ -243,6 +243,8 @@ void fields(Fields& f, ViewSettings& view)
         "solo", solo, 0, 255,
         {.meaning = "number of the only group that is drawn, with the groups below it; 0: unpainted voxels only",
          .standard = "none: all that are visible"});
+    f.flag("plane_handles", view.plane_handles,
+           {"false: the window draws no handles of the oblique cutting plane, which still cuts"});
     view.solo = solo ? std::optional(uint8_t(*solo)) : std::nullopt;
 }
 

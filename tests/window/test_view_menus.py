@@ -10,7 +10,8 @@ from window import PATIENCE_S
 
 # Before an entry is chosen, where other shortcuts alone do not do it.
 PREPARED = {"copy_measurements": "measure", "clear_measurements": "measure", "mend_cut": "cut_a_line",
-            "select_segment": "line"}   # by methods of MenuWalk
+            "select_segment": "line", "flip_oblique_cut": "cut_obliquely",
+            "remove_oblique_cut": "cut_obliquely"}   # by methods of MenuWalk
 # Menus within menus, and what entries without a shortcut make: an action, or a dialog that is shown.
 INNER = {"Open recent", "Look from", "Kept views", "Panels", "Turn the view", "Move the view", "Distance blending",
          "Cutting planes", "Clip planes", "Touch", "Looks", "Group of the selection", "view 1", "Remove"}
@@ -213,6 +214,10 @@ class MenuWalk(Seen):
             self.do("mousemove", at, y + 40, pause_s=0)
             self.press_shortcut("add_node")
         return x, y + 40
+
+    def cut_obliquely(self):
+        self.check_follows(lambda: self.choose(["View", "Cutting planes"], "Oblique cutting plane, facing the view"),
+                           "oblique_cut")
 
     def cut_a_line(self):
         """Three nodes in a row, of which the middle one is deleted."""

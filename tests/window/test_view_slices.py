@@ -96,6 +96,45 @@ class Slices(Seen):
         self.assertEqual(cut["lower"][:2], [0, 0])
         self.finish()
 
+    def pink_rows(self, x):
+        """The rows of a column in which the oblique plane's lines and handles are, from the top."""
+        _, _, rows = self.pixels()
+        at = lambda row, channel: rows[row][3 * x + channel]
+        return [row for row in range(90, WINDOW[1] - 40)
+                if min(at(row, 0), at(row, 2)) > at(row, 1) + 60 and at(row, 2) > 150]
+
+    def test_an_oblique_plane_is_added_moved_tilted_and_removed(self):
+        session = self.scan()
+        self.click_does("oblique_cut", "Cut plane", "Tools")
+        self.see_picture()
+        facing = self.saved(session)["cut"]
+        x, y = self.middle()
+        # Below the middle, since the normal points at the viewer: a drag upwards pushes the plane away.
+        below = [row for row in self.pink_rows(x) if row > y + 20]
+        ends = [row for row, after in zip(below, below[1:] + [WINDOW[1]]) if after > row + 8]
+        self.assertTrue(ends)
+        handle = x, ends[0] - 5   # a ring with a line to it
+        self.check_drag(handle, [(x, handle[1] - 8 * step) for step in (1, 2, 3)], "set cut.plane_point")
+        moved = self.saved(session)["cut"]
+        self.assertEqual(moved["plane_normal"], facing["plane_normal"])
+        way = [b - a for a, b in zip(facing["plane_point"], moved["plane_point"])]
+        self.assertLess(sum(a * b for a, b in zip(way, facing["plane_normal"])), -1.0)
+        # The tip of the normal is in the middle.
+        self.do("mousemove", x + 3, y, pause_s=0)
+        self.see("tilt the plane")
+        self.check_drag((x, y), [(x + 12 * step, y - 4 * step) for step in (1, 2, 3)], "set cut.plane_normal")
+        tilted = self.saved(session)["cut"]
+        self.assertEqual(tilted["plane_point"], moved["plane_point"])
+        cosine = sum(a * b for a, b in zip(tilted["plane_normal"], facing["plane_normal"]))
+        self.assertGreater(cosine, 0.1)
+        self.assertLess(cosine, 0.99)
+        # One undone step takes a whole drag back.
+        self.check_key("ctrl+z", "undo")
+        self.assertEqual(self.saved(session)["cut"], moved)
+        self.click_does("oblique_cut", "Cut plane", "Tools")
+        self.assertNotIn("plane_normal", self.saved(session).get("cut", {}))
+        self.finish()
+
     def bottom_handle(self):
         """The lowest place below the middle of the picture where a handle's blue ring is."""
         x, y = self.middle()

@@ -127,6 +127,11 @@ void cut_menu(const Model& model, Actions& actions)
     ImGui::TextDisabled("Visible range, in voxels (drag)");
     for (int axis = 0; axis < 3; ++axis) cut_range(axis, model, actions);
     ImGui::Separator();
+    shortcut_item("oblique_cut", model, actions);
+    shortcut_item("flip_oblique_cut", model, actions);
+    shortcut_item("remove_oblique_cut", model, actions);
+    shortcut_item("plane_handles", model, actions, model.session.view.plane_handles);
+    ImGui::Separator();
     if (ImGui::MenuItem("Show everything")) actions.push_back(ResetCuts{});
     ImGui::EndMenu();
 }

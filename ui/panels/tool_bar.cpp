@@ -186,6 +186,24 @@ void clip_button(const Model& model, Actions& actions)
     ImGui::EndDisabled();
     ImGui::PopStyleColor();
     hint((name_with_key("cut_box", model.keymap) + "\nDrag a handle to cut the volume open.").c_str());
+    ImGui::SameLine();
+}
+
+/// Draws the button that adds the oblique cutting plane, or removes it.
+void plane_button(const Model& model, Actions& actions)
+{
+    const bool has_plane = model.session.cut.plane_normal.has_value();
+    const char* const id = has_plane ? "remove_oblique_cut" : "oblique_cut";
+    const Shortcut* const shortcut = shortcut_named(id);
+    if (!shortcut) return;
+    ImGui::PushStyleColor(ImGuiCol_Button, color_of(has_plane ? ColorRole::chosen : ColorRole::bar));
+    ImGui::BeginDisabled(!model.is_open);
+    if (ImGui::Button("Cut plane")) actions.push_back(shortcut->action(model, 1.0));
+    ImGui::EndDisabled();
+    ImGui::PopStyleColor();
+    hint((name_with_key(id, model.keymap) +
+          (has_plane ? "" : "\nIt removes the half towards you. Drag its handles to move and tilt it."))
+             .c_str());
     ImGui::SameLine(0.0f, ImGui::GetFontSize());
 }
 
@@ -257,6 +275,7 @@ void tool_bar(const ImVec2& at, float width, const Model& model, Actions& action
     for (const ToolRow& row : tool_rows()) tool_button(row, has_names, model, actions);
     ImGui::SameLine(0.0f, ImGui::GetFontSize());
     clip_button(model, actions);
+    plane_button(model, actions);
     active_group(model, actions);
     mouse_words(model);
     ImGui::End();

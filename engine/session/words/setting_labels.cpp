@@ -77,6 +77,7 @@ constexpr SettingLabel LABELS[] = {
     {"view.volume", "volume"},
     {"view.meshes", "nodes, internodes and probe"},
     {"view.cut_box", "edges of the cutting planes"},
+    {"view.plane_handles", "handles of the oblique cutting plane"},
     {"view.solo", "only visible group"},
     {"interaction.resolution", "resolution in motion"},
     {"interaction.frames_per_second", "frame rate", "frames per second"},

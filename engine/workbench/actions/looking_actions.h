@@ -1,6 +1,7 @@
 #pragma once
 // Actions on the view. Angles are in degrees; pixels are pixels of a pane, and panes are numbered as in Screen::parts.
 
+#include "engine/base/spelling.h"
 #include "engine/workbench/actions/action_row.h"
 
 namespace shvr::ui {
@@ -76,6 +77,21 @@ struct MoveClip {
 /// Sets both clip planes, as distances from the eye in physical units; 0: no plane.
 struct PlaceClips {
     double near = 0.0, far = 0.0;
+};
+
+/// What becomes of the oblique cutting plane.
+enum class PlaneChange { add, flip, remove };
+inline constexpr Spelling<PlaneChange> PLANE_CHANGES[] = {
+    {PlaneChange::add, "add"}, {PlaneChange::flip, "flip"}, {PlaneChange::remove, "remove"}};
+constexpr std::span<const Spelling<PlaneChange>> spellings_of(PlaneChange)
+{
+    return PLANE_CHANGES;
+}
+
+/// Adds an oblique cutting plane through the middle of the view, facing the camera, or turns the present one there;
+/// flips it, so that it removes the other side; or removes it.
+struct CutObliquely {
+    PlaneChange change = PlaneChange::add;
 };
 
 struct ResetCuts {};
@@ -171,6 +187,17 @@ inline constexpr auto LOOKING_ACTIONS = std::tuple{
                                 f.number("near", a.near, DISTANCES, {});
                                 f.number("far", a.far, DISTANCES, {});
                             }),
+    row<CutObliquely, Viewer>(
+        {"oblique_cut", "Oblique cutting plane", LOOKING_GROUP,
+         "adds a cutting plane through the middle of the view, facing the camera, or turns the present one there; "
+         "flips "
+         "it, so that it removes the other side; or removes it"},
+        [](auto& f, CutObliquely& a) { f.choice("change", a.change, {.is_required = true}); },
+        [](const auto& model, const CutObliquely& action) -> std::string {
+            return action.change == PlaneChange::add || model.session.cut.plane_normal
+                       ? ""
+                       : "there is no oblique cutting plane";
+        }),
     row<ResetCuts, Viewer>({"reset_cuts", "Remove all planes", LOOKING_GROUP, "shows the whole volume"}),
     row<FitView, Viewer>(
         {"fit_view", "Fit", LOOKING_GROUP, "brings the uncut part of the volume into view; in a slice, the slices"},

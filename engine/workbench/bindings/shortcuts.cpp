@@ -225,6 +225,12 @@ Action roll(const Model&, double amount)
 
 enum class Plane { lower, upper };
 
+template <PlaneChange CHANGE>
+Action cut_obliquely(const Model&, double)
+{
+    return CutObliquely{CHANGE};
+}
+
 template <int AXIS, Plane PLANE, int DIRECTION>
 Action move_cut(const Model&, double amount)
 {
@@ -432,6 +438,14 @@ constexpr Shortcut SHORTCUTS[] = {
     both("volume", VIEWS_KEYS, "Volume", Mode::tap, toggle_view<&ViewSettings::volume>, "F2"),
     both("meshes", VIEWS_KEYS, "Nodes, internodes and probe", Mode::tap, toggle_view<&ViewSettings::meshes>, "F3"),
     both("cut_box", VIEWS_KEYS, "Clip box with handles", Mode::tap, toggle_view<&ViewSettings::cut_box>, ""),
+    both("oblique_cut", VIEWS_KEYS, "Oblique cutting plane, facing the view", Mode::tap,
+         cut_obliquely<PlaneChange::add>, ""),
+    both("flip_oblique_cut", VIEWS_KEYS, "Flip the oblique cutting plane", Mode::tap, cut_obliquely<PlaneChange::flip>,
+         ""),
+    both("remove_oblique_cut", VIEWS_KEYS, "Remove the oblique cutting plane", Mode::tap,
+         cut_obliquely<PlaneChange::remove>, ""),
+    both("plane_handles", VIEWS_KEYS, "Handles of the oblique cutting plane", Mode::tap,
+         toggle_view<&ViewSettings::plane_handles>, ""),
 
     both("tool_turn", TOOL_KEYS, "Turn with the mouse", Mode::tap, take<Tool::turn>, "Alt+1"),
     both("tool_paint", TOOL_KEYS, "Paint with the mouse", Mode::tap, take<Tool::paint>, "Alt+2"),

@@ -137,7 +137,7 @@ void SettingsEditor::settings_changed(const Session& before)
     } else if (before.groups != after.groups) {
         renderer_.scene().show_surfaces(document.surfaces, document.annotator.document().trace, after.groups);
     }
-    if (before.cut != after.cut) others_.show_cut_box();
+    if (before.cut.lower != after.cut.lower || before.cut.upper != after.cut.upper) others_.show_cut_box();
     if (before.probe.tool != after.probe.tool) {
         if (document.annotator.stroke_is_open()) document.annotator.end_stroke();
         if (document.drags_node) others_.stop_drag();

@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "engine/look/camera_motion.h"
+#include "engine/look/cut_corners.h"
 #include "engine/session/words/number_words.h"
 #include "engine/workbench/actions/action_rows.h"
 #include "engine/workbench/desk/declined.h"
 #include "engine/workbench/edits/edit.h"
 #include "engine/workbench/edits/trace_ops.h"
+#include "engine/workbench/sight/plane_handles.h"
 #include "engine/workbench/sight/words.h"
 
 namespace shvr::ui {
@@ -282,6 +285,31 @@ void Viewer::act(const MoveClip& action)
                  " from the eye"));
 }
 
+void Viewer::act(const CutObliquely& action)
+{
+    Session after = document_->session;
+    CutBox& cut = after.cut;
+    switch (action.change) {
+        case PlaneChange::add:
+            cut = cut_facing(cut, document_->camera, document_->volume());
+            after.view.plane_handles = true;
+            break;
+        case PlaneChange::flip:
+            if (!cut.plane_normal) fail("there is no oblique cutting plane to flip");
+            cut.plane_normal = -*cut.plane_normal;
+            break;
+        case PlaneChange::remove:
+            if (!cut.plane_normal) fail("there is no oblique cutting plane to remove");
+            cut.plane_normal.reset();
+            cut.plane_point.reset();
+            break;
+    }
+    others_.take_session(std::move(after));
+    say(action.change == PlaneChange::add ? "Cut through the middle, facing you: drag the handles to move and tilt it"
+        : action.change == PlaneChange::flip ? "The oblique plane cuts the other side away"
+                                             : "The oblique cutting plane is removed");
+}
+
 void Viewer::act(const ResetCuts&)
 {
     Session after = document_->session;
@@ -305,11 +333,11 @@ void Viewer::act(const FitView& action)
     const VolumeInfo& volume = document_->volume();
     const glm::dvec3 size(volume.size);
     const CutBox& cut = document_->session.cut;
-    const glm::dvec3 lower = glm::clamp(cut.lower, glm::dvec3(0.0), size);
-    const glm::dvec3 upper = glm::clamp(cut.upper, lower, size);
+    glm::dvec3 lower = glm::clamp(cut.lower, glm::dvec3(0.0), size), upper = glm::clamp(cut.upper, lower, size);
+    if (const auto box = box_left(cut, volume)) std::tie(lower, upper) = *box;
     const glm::uvec2 pixels = has_panes ? pane(0).pixels() : pixels_;
     look_from(fitted(document_->camera, pixels, lower * volume.spacing, upper * volume.spacing));
-    const bool is_cut = lower != glm::dvec3(0.0) || upper != size;
+    const bool is_cut = lower != glm::dvec3(0.0) || upper != size || cut.plane_normal;
     const bool is_clipped = document_->camera.near_distance > 0.0 || document_->camera.far_distance > 0.0;
     say(sentence(is_cut ? "The uncut part of the volume is in view" : "The whole volume is in view",
                  is_clipped ? ", except where the clip planes hide it" : ""));

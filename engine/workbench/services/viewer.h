@@ -28,6 +28,7 @@ public:
     void act(const MoveCut& action);
     void act(const MoveClip& action);
     void act(const PlaceClips& action);
+    void act(const CutObliquely& action);
     void act(const ResetCuts& action);
     void act(const FitView& action);
     void act(const ResetView& action);

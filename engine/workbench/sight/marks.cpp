@@ -8,13 +8,14 @@
 #include "engine/workbench/lists/group_list.h"
 #include "engine/workbench/sight/cut_handles.h"
 #include "engine/workbench/sight/hits.h"
+#include "engine/workbench/sight/plane_handles.h"
 #include "engine/workbench/sight/words.h"
 
 namespace shvr::ui {
 
 namespace {
 
-constexpr glm::dvec3 DARK(0.02), LIGHT(0.95), LINK(1.0, 0.83, 0.02), MEASURED(0.05, 0.9, 0.9);
+constexpr glm::dvec3 DARK(0.02), LIGHT(0.95), LINK(1.0, 0.83, 0.02), MEASURED(0.05, 0.9, 0.9), PLANE(1.0, 0.45, 0.95);
 constexpr std::array<glm::dvec3, 3> AXES{glm::dvec3(0.95, 0.12, 0.08), glm::dvec3(0.1, 0.75, 0.15),
                                          glm::dvec3(0.15, 0.4, 1.0)};
 constexpr double DASH = 6.0, GAP = 5.0;
@@ -52,6 +53,7 @@ public:
             if (is_for_screen_) brush_ring();
         }
         if (is_for_screen_) clip_box();
+        if (is_for_screen_) oblique_plane();
         if (is_for_screen_) drawn_tool();
         if (is_for_screen_) link();
         measurements();
@@ -190,6 +192,24 @@ private:
         const bool is_below = model_.pointer && model_.pointer->pane == index_;
         const std::optional<CutHandle> held = is_below ? handle_at(handles, model_.pointer->pixel) : std::nullopt;
         for (const CutHandle& handle : handles) knob(handle.at, held == handle, AXES[size_t(handle.axis)]);
+    }
+
+    /// Draws the oblique cutting plane and its handles, with a word at the one that the pointer would take hold of.
+    void oblique_plane()
+    {
+        if (!model_.session.view.plane_handles) return;
+        const CutBox& cut = model_.session.cut;
+        const std::vector<PlaneHandle> handles = plane_handles(pane_, cut, model_.volume);
+        const bool is_below = model_.pointer && model_.pointer->pane == index_;
+        const auto held = is_below ? plane_handle_at(handles, model_.pointer->pixel) : std::optional<PlaneHandle>();
+        for (const auto& [from, to] : plane_lines(pane_, cut, model_.volume)) line(from, to, PLANE);
+        for (const PlaneHandle& handle : handles) {
+            const bool is_held = held == handle;
+            knob(handle.at, is_held, PLANE);
+            if (is_held)
+                label(handle.at + glm::dvec2(14.0 * units_, 0.0), {0.0, 0.5},
+                      handle.kind == PlaneHandle::Kind::move ? "move the plane" : "tilt the plane");
+        }
     }
 
     /// Marks the node or the centre line to which the tools snap now.

@@ -140,6 +140,9 @@ std::string special_sentence(const Session& was, const Session& is)
     if (was.view.cut_box != is.view.cut_box)
         return is.view.cut_box ? "The clip box is drawn: drag its handles to cut"
                                : "The clip box is not drawn; it still cuts";
+    if (was.view.plane_handles != is.view.plane_handles)
+        return is.view.plane_handles ? "The oblique cutting plane is drawn with its handles, where there is one"
+                                     : "The oblique cutting plane is not drawn; it still cuts";
     if (was.view.solo != is.view.solo) return sentence_about_solo(is);
     if (was.interaction.workspace_scale != is.interaction.workspace_scale) {
         const double scale = std::round(100.0 * is.interaction.workspace_scale) / 100.0;

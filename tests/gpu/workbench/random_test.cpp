@@ -29,7 +29,9 @@ public:
             case 0: return Orbit{real(-40, 40), real(-20, 20)};
             case 1: return Zoom{0, {real(0, 48), real(0, 40)}, real(0.8, 1.3)};
             case 2: return LookFrom{std::vector<std::string>{"front", "top", "left", "nowhere"}[size_t(whole(0, 3))]};
-            case 3: return MoveCut{int(whole(0, 2)), whole(0, 1) == 1, real(-0.1, 0.1)};
+            case 3:
+                if (whole(0, 3) == 0) return CutObliquely{PlaneChange(whole(0, 2))};
+                return MoveCut{int(whole(0, 2)), whole(0, 1) == 1, real(-0.1, 0.1)};
             case 4: return whole(0, 3) == 0 ? Action(ResetCuts{}) : Action(MoveClip{false, real(-0.1, 0.1)});
             case 5: return set("light.ambient", digits(real(0, 1)));
             case 6: return set("groups." + sentence(whole(1, 6)) + ".opacity", digits(real(0, 1)));

@@ -83,7 +83,7 @@ const std::string EVERYTHING = R"({
              "preintegration": true, "exact_integral": true, "gradient": "analytic", "smooth_borders": true, "saturation": 0.375},
   "view": {"arrangement": "slices", "stereo": {"output": "top_bottom", "eye_distance": 0.0625, "toe_in": true},
            "slices": {"black": -20, "white": 300.5, "paint_share": 0.25, "zoom": 3, "cross": [4, 5.5, 6]}, "overview_zoom": 1.5,
-           "volume": false, "meshes": false, "cut_box": true, "solo": 7},
+           "volume": false, "meshes": false, "cut_box": true, "solo": 7, "plane_handles": false},
   "interaction": {"resolution": 0.5, "frames_per_second": 25, "screenshot_scale": 3, "workspace_scale": 2.5},
   "cut": {"lower": [1, 2, 3], "upper": [40, 50, 60.5], "plane_normal": [0, 1, -2], "plane_point": [3, 4.5, 5]},
   "probe": {"voxel": [10, 20, 30.5], "radius_voxels": 2.5, "group": 7, "brush": "speckle", "region": "box",
@@ -165,7 +165,8 @@ TEST_CASE("every key of a session is read")
                                        false,
                                        false,
                                        true,
-                                       uint8_t{7}});
+                                       uint8_t{7},
+                                       false});
     CHECK(session.interaction == InteractionSettings{0.5, 25.0, 3, 2.5});
     CHECK(session.cut == CutBox{{1, 2, 3}, {40, 50, 60.5}, glm::dvec3(0, 1, -2), glm::dvec3(3, 4.5, 5)});
     const BrushSettings brush{

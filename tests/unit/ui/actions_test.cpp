@@ -32,6 +32,7 @@ std::vector<Action> samples()
             PivotAt{1, {3.5, 4}},
             MoveCut{2, true, -0.01},
             MoveClip{true, 0.25},
+            CutObliquely{PlaneChange::flip},
             ResetCuts{},
             UpdateOcclusion{},
             Set{R"({"light":{"ambient":0.45}})"},

@@ -114,6 +114,7 @@ void draw_operation(GroupOperation& operation, const Model& model)
             if constexpr (requires { op.limits; }) {
                 field_name("Where");
                 ImGui::Checkbox("Only in the visible part (cutting planes)", &state.is_limited_to_view);
+                hint("The box that the six cutting planes leave. An oblique cutting plane does not limit operations.");
             }
         },
         operation);

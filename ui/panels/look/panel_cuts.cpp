@@ -77,7 +77,7 @@ void cutting_planes(const Model& model, Actions& actions)
     ImGui::BeginDisabled(!is_cut);
     if (ImGui::Button("Show everything")) set(actions, model, [](Session& s) { s.cut = {}; });
     ImGui::EndDisabled();
-    hint("All six cutting planes back to the volume's faces.");
+    hint("All six cutting planes back to the volume's faces, and no oblique one.");
     ImGui::SameLine();
     bool has_box = model.session.view.cut_box;
     if (ImGui::Checkbox("Clip box with handles", &has_box))
@@ -85,6 +85,60 @@ void cutting_planes(const Model& model, Actions& actions)
     hint(
         "Lines along the edges of the uncut part, in the colours of the axes, and a handle for each of its faces: drag "
         "them in the volume or in a slice.");
+}
+
+/// Draws the numbers of the oblique cutting plane: its direction, and its distance from the volume's middle.
+void oblique_numbers(const Model& model, Actions& actions)
+{
+    CutBox cut = model.session.cut;
+    const glm::dvec3& spacing = model.volume.spacing;
+    const glm::dvec3 middle = 0.5 * glm::dvec3(model.volume.size);
+    glm::dvec3 normal = glm::normalize(*cut.plane_normal);
+    const glm::dvec3 point = cut.plane_point.value_or(middle);
+    bool is_other = false;
+    row("Direction");
+    const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
+    const float width = (ImGui::GetContentRegionAvail().x - 2.0f * gap) / 3.0f;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (axis > 0) ImGui::SameLine(0.0f, gap);
+        ImGui::SetNextItemWidth(width);
+        is_other |= drag_number(sentence("##", AXIS_NAMES[axis], " of the direction").c_str(), normal[axis], 0.005,
+                                -1.0, 1.0, "%.3f");
+        hint("Direction in which the plane removes the volume, along x, y and z, in the unit of length.");
+    }
+    if (is_other && glm::length(normal) > 1e-3) cut.plane_normal = glm::normalize(normal);
+    const double reach = 0.5 * glm::length(glm::dvec3(model.volume.size) * spacing);
+    double offset = glm::dot((point - middle) * spacing, glm::normalize(*cut.plane_normal));
+    const std::string format = std::string("%.5g ") + spelled(model.volume.unit);
+    row("Offset");
+    if (drag_number("##offset", offset, reach / 300.0, -reach, reach, format.c_str())) {
+        is_other = true;
+        cut.plane_point = middle + offset * glm::normalize(*cut.plane_normal) / spacing;
+    }
+    hint("Distance of the plane from the volume's middle, towards what it removes.");
+    if (is_other) set(actions, model, [&](Session& s) { s.cut = cut; });
+}
+
+/// Draws the buttons of the oblique cutting plane and, if there is one, its numbers.
+void oblique_plane(const Model& model, Actions& actions)
+{
+    const bool has_plane = model.session.cut.plane_normal.has_value();
+    if (ImGui::Button(has_plane ? "Face the view" : "Oblique cutting plane"))
+        actions.push_back(CutObliquely{PlaneChange::add});
+    hint(
+        "A cutting plane through the middle of the view that removes the half towards you. Drag its handles, in the "
+        "volume or in a slice: the one at the tip of the normal tilts it, the other moves it.");
+    if (!has_plane) return;
+    ImGui::SameLine();
+    if (ImGui::Button("Flip")) actions.push_back(CutObliquely{PlaneChange::flip});
+    hint("Removes the other side.");
+    ImGui::SameLine();
+    if (ImGui::Button("Remove")) actions.push_back(CutObliquely{PlaneChange::remove});
+    ImGui::SameLine();
+    bool has_handles = model.session.view.plane_handles;
+    if (ImGui::Checkbox("Handles", &has_handles))
+        set(actions, model, [&](Session& s) { s.view.plane_handles = has_handles; });
+    oblique_numbers(model, actions);
 }
 
 /// Draws a clip plane's distance from the eye; 0 means no plane.
@@ -120,6 +174,8 @@ void clip_planes(const Model& model, Actions& actions)
 void cuts_panel(const Model& model, Actions& actions)
 {
     cutting_planes(model, actions);
+    ImGui::Separator();
+    oblique_plane(model, actions);
     ImGui::Separator();
     clip_planes(model, actions);
 }

@@ -49,6 +49,23 @@ TEST_CASE_FIXTURE(ViewerAlone, "viewer: cutting planes go through the settings, 
     CHECK(taken->cut == CutBox{});
 }
 
+TEST_CASE_FIXTURE(ViewerAlone, "viewer: an oblique plane faces the camera, is flipped, and is removed")
+{
+    CHECK(contains(error_of([&] { viewer.act(CutObliquely{PlaneChange::flip}); }), "no oblique cutting plane"));
+    CHECK(contains(error_of([&] { viewer.act(CutObliquely{PlaneChange::remove}); }), "no oblique cutting plane"));
+    viewer.act(CutObliquely{PlaneChange::add});
+    REQUIRE(taken);
+    const Camera& camera = document().camera;
+    const glm::dvec3 towards = glm::normalize(camera.eye - camera.target);
+    CHECK(glm::distance(*taken->cut.plane_normal, towards) < 1e-12);
+    document().session = *taken;
+    viewer.act(CutObliquely{PlaneChange::flip});
+    CHECK(*taken->cut.plane_normal == -*document().session.cut.plane_normal);
+    CHECK(taken->cut.plane_point == document().session.cut.plane_point);
+    viewer.act(CutObliquely{PlaneChange::remove});
+    CHECK(taken->cut == CutBox{});
+}
+
 TEST_CASE_FIXTURE(ViewerAlone, "viewer: a picture is behind until the next step, and a pane has its size")
 {
     CHECK_FALSE(viewer.is_stirring());
