@@ -20,7 +20,7 @@ public:
     {
         const Look& look = look_of(node.group);
         if (!look.visible) return std::nullopt;
-        const double radius = shown(node.radius);
+        const double radius = std::max(shown(node.radius), NODE_FACTOR * thickest_at(number));
         return KeyedSurface{surface_key(SurfaceKind::node, number),
                             {node.position, node.position, radius, radius, look.color}};
     }
@@ -39,6 +39,17 @@ private:
         bool visible;
         glm::dvec3 color;
     };
+    /// Returns the radius, as drawn, of the thickest visible internode where it meets a node; 0 where there is none.
+    double thickest_at(uint32_t node)
+    {
+        double thickest = 0.0;
+        for (const uint32_t number : trace_.internodes_of(node)) {
+            const TraceInternode& internode = trace_.internode(number);
+            if (!look_of(internode.group).visible) continue;
+            thickest = std::max(thickest, shown(trace_.radius_of(internode, internode.a == node ? 0.0 : 1.0)));
+        }
+        return thickest;
+    }
     double shown(double radius) const { return radius > 0.0 ? radius : least_; }
     const Look& look_of(uint8_t group)
     {
@@ -85,6 +96,8 @@ std::optional<ChangedSurfaces> changed_surfaces(const TraceGraph& trace, const G
             internodes.insert(around.begin(), around.end());
         } else if (const auto* internode = std::get_if<TraceInternodeChange>(of_trace)) {
             internodes.insert(internode->internode);
+            for (const auto& ends : {internode->before, internode->after})
+                if (ends) nodes.insert({ends->a, ends->b});
         } else if (std::holds_alternative<TraceSizeChange>(*of_trace)) {
             return std::nullopt;
         }
@@ -112,8 +125,9 @@ public:
     void add(const TraceNode& node) { add(node.position, node.radius); }
     void add(const glm::dvec3& position, double radius)
     {
-        lower_ = glm::min(lower_, position - radius);
-        upper_ = glm::max(upper_, position + radius);
+        const double drawn = NODE_FACTOR * radius;
+        lower_ = glm::min(lower_, position - drawn);
+        upper_ = glm::max(upper_, position + drawn);
     }
     /// Returns the box enlarged by one voxel on each side, to cover nodes without a radius.
     VoxelBox box(const glm::dvec3& spacing) const

@@ -13,6 +13,10 @@
 
 namespace shvr {
 
+/// Least radius with which a node is drawn, relative to the thickest internode that meets it, so that nodes are seen
+/// along their internodes. Only pictures have it: the trace, its files and its measures keep the true radius.
+inline constexpr double NODE_FACTOR = 1.8;
+
 /// Omits hidden groups. `spacing`: the volume's. Nodes without a radius are drawn with a radius of half a voxel along
 /// the finest axis.
 std::vector<KeyedSurface> surfaces_of(const TraceGraph& trace, const Groups& groups, const glm::dvec3& spacing);
