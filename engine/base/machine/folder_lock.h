@@ -8,8 +8,8 @@
 
 namespace shvr {
 
-/// Name of the file in a folder that is locked instead of the folder where only files can be locked, as on NFS. A writer
-/// that empties a locked folder keeps it, and removes it once the lock is released.
+/// Name of the file in a folder that is locked instead of the folder where only files can be locked, as on NFS. Keep it
+/// when emptying a locked folder, and remove it once the lock is released.
 inline constexpr const char* FOLDER_LOCK = ".shvr-lock";
 
 /// Locks an existing folder. Null, with errno EWOULDBLOCK, if another process has locked it; null, with another errno,

@@ -189,7 +189,7 @@ TEST_CASE_FIXTURE(OnDevice,
     CHECK(on.bench.messages().last().find("nothing there has a middle above the paint threshold 250") !=
           std::string::npos);
     on.perform(Set{R"({"probe":{"paint_threshold":105,"centered_nodes":false}})"});
-    on.perform(NodeAt{0, {20.0, 48.0}});  // beside the balls of the others
+    on.perform(NodeAt{0, {20.0, 48.0}});  // away from the balls of the others
     CHECK(std::abs(on.trace().node(3).position.y - 16.0) < 2.0);
     on.perform(Set{R"({"probe":{"centered_nodes":true},"view":{"arrangement":"slices"}})"});
     const Pane across_z = on.bench.model().panes[1].pane;
