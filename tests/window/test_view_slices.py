@@ -119,7 +119,8 @@ class Slices(Seen):
         self.assertEqual(moved["plane_normal"], facing["plane_normal"])
         way = [b - a for a, b in zip(facing["plane_point"], moved["plane_point"])]
         self.assertLess(sum(a * b for a, b in zip(way, facing["plane_normal"])), -1.0)
-        # The tip of the normal is in the middle.
+        # The tip of the normal is in the middle of the picture, below that of the window.
+        y = next(row for row in self.pink_rows(x) if row > y - 20) + 5
         self.do("mousemove", x + 3, y, pause_s=0)
         self.see("tilt the plane")
         self.check_drag((x, y), [(x + 12 * step, y - 4 * step) for step in (1, 2, 3)], "set cut.plane_normal")
