@@ -64,16 +64,18 @@ TEST_CASE("a voxel grows into a ball of exactly its distance, across bricks")
 TEST_CASE("distances of many voxels agree with their definition, across bricks and at the volume's border")
 {
     std::mt19937 random(12);
-    const Size3 size(75, 40, 35);
-    DenseGroups few{size, std::vector<uint8_t>(size_t(75 * 40 * 35))}, most = few;
+    const Size3 size(40, 36, 34);
+    DenseGroups few{size, std::vector<uint8_t>(size_t(40 * 36 * 34))}, most = few;
     most.groups.assign(most.groups.size(), 1);
     for (int i = 0; i < 6; ++i) {
         const size_t at = random() % few.groups.size();
         few.groups[at] = 1;
         most.groups[at] = uint8_t(i % 3);
     }
-    const glm::dvec3 spacing(1, 1.5, 2.1);
-    for (const double distance : {5.0, 15.99, 16.0, 16.99, 17.0, 20.0}) {
+    std::vector<double> distances{16.0, 17.0};
+    if (repeats(0, 1) > 0) distances.insert(distances.end(), {5.0, 15.99, 16.99, 20.0});
+    const glm::dvec3 spacing(1, 4, 6.3);  // few voxels within these distances, for the sake of the reference
+    for (const double distance : distances) {
         CAPTURE(distance);
         CHECK(check_operation(GrowOp{.group = 1, .distance = distance}, few, spacing).voxels > 100);
         CHECK(check_operation(ShrinkOp{.group = 1, .distance = distance}, most, spacing).voxels > 100);
