@@ -46,7 +46,7 @@ void make_folder(const fs::path& folder, const fs::path& target)
 
 FileDescriptor locked(const fs::path& folder, const fs::path& target)
 {
-    std::optional<FileDescriptor> lock = lock_folder(folder);
+    std::optional<FileDescriptor> lock = lock_folder(folder, WithoutLocks::allowed);
     if (lock) return std::move(*lock);
     if (errno != EWOULDBLOCK) refuse_folder(target, errno);
     fail(target.string(), ": another process is writing it; expected no other: wait until it ends");
@@ -115,7 +115,7 @@ void clear_remains(const fs::path& target)
 {
     const fs::path container = container_of(link_target(plain_path(target)));
     if (!is_occupied(container)) return;
-    std::optional<FileDescriptor> lock = lock_folder(container);
+    std::optional<FileDescriptor> lock = lock_folder(container, WithoutLocks::refused);
     if (!lock) return;
     remove_locked_folder(container, lock);
 }

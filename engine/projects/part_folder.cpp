@@ -48,7 +48,7 @@ void make_folder(const fs::path& path)
 
 FileDescriptor locked(const fs::path& folder)
 {
-    std::optional<FileDescriptor> lock = lock_folder(folder);
+    std::optional<FileDescriptor> lock = lock_folder(folder, WithoutLocks::allowed);
     if (lock) return std::move(*lock);
     if (errno != EWOULDBLOCK) fail(folder.string(), ": cannot be opened: ", reason_of(errno));
     fail(folder.string(),

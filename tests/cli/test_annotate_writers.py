@@ -135,6 +135,18 @@ class Writers(CliTest):
                 self.finish(first, [self.dab(1), {"op": "undo"}, {"op": "save"}])
         self.assertEqual([name for name in self.files() if "journal" in name], ["session.journal"])
 
+    # Kind (bad input and lost work): a save by a living program and remains of a killed one look alike without locks
+    def test_what_another_program_builds_stays_where_no_lock_tells_whether_it_lives(self):
+        built = self.folder / ".paint.mask.shvr-part" / "new" / "0"
+        script = self.write_script("script.jsonl", [{"op": "expect", "voxels_in_group": {"1": 0}}])
+        for locks, stays in (("ENOSYS", True), ("ENOLCK", True), ("ENOTSUP", True), ("files", False), ("", False)):
+            with self.subTest(locks=locks):
+                built.mkdir(parents=True, exist_ok=True)
+                result = run("annotate", self.session, "--script", script, environment=self.elsewhere("here", locks))
+                self.assertEqual(result.returncode, 0, result.stderr)
+                self.assertEqual(built.exists(), stays)
+                self.assertEqual(built.parent.parent.exists(), stays)
+
     def test_a_writer_on_another_computer_loses_nothing_and_who_comes_second_is_told(self):
         """The first is stopped while the second works, saves and ends."""
         self.annotate([self.dab(1), {"op": "save"}])

@@ -31,18 +31,19 @@ int open_lock_file(const fs::path& folder)
 
 }  // namespace
 
-std::optional<FileDescriptor> lock_folder(const fs::path& folder)
+std::optional<FileDescriptor> lock_folder(const fs::path& folder, WithoutLocks without_locks)
 {
     constexpr int TRIES = 3;  // file systems with changing inode numbers always seem to have moved the folder
     for (int tries = 1;; ++tries) {
         FileDescriptor whole(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
         if (!whole) return std::nullopt;
-        const bool is_locked = ::flock(whole.number(), LOCK_EX | LOCK_NB) == 0;
+        bool is_locked = ::flock(whole.number(), LOCK_EX | LOCK_NB) == 0;
         if (!is_locked && errno == EWOULDBLOCK) return std::nullopt;
         // NFS locks neither folders nor what is opened for reading alone. A folder that cannot be written is refused
         // with the reason later.
         FileDescriptor file(is_locked ? -1 : open_lock_file(folder));
-        if (file && ::flock(file.number(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) return std::nullopt;
+        if (file) is_locked = ::flock(file.number(), LOCK_EX | LOCK_NB) == 0;
+        if (!is_locked && (errno == EWOULDBLOCK || without_locks == WithoutLocks::refused)) return std::nullopt;
         FileDescriptor& lock = file ? file : whole;
         // The folder may have been moved after it was opened and before it was locked.
         if (is_lock_of(lock, folder) || tries == TRIES) return std::move(lock);

@@ -13,8 +13,9 @@ namespace shvr {
 inline constexpr const char* FOLDER_LOCK = ".shvr-lock";
 
 /// Locks an existing folder. Null, with errno EWOULDBLOCK, if another process has locked it; null, with another errno,
-/// if it cannot be opened. Without locks in the file system, always succeeds.
-std::optional<FileDescriptor> lock_folder(const std::filesystem::path& folder);
+/// if it cannot be opened. On file systems without locks, succeeds always if `allowed`, and otherwise never.
+enum class WithoutLocks { allowed, refused };
+std::optional<FileDescriptor> lock_folder(const std::filesystem::path& folder, WithoutLocks without_locks);
 
 /// Whether the folder is still the one that was locked: false if it was moved, removed or replaced.
 bool is_lock_of(const FileDescriptor& lock, const std::filesystem::path& folder);
