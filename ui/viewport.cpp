@@ -135,7 +135,7 @@ bool Viewport::takes_handle(const ButtonEvent& event, const Model& model)
     const glm::dvec2 pixel = in_pane(event.at, model);
     plane_handle_.reset();
     handle_.reset();
-    if (view.plane_handles) plane_handle_ = plane_handle_at(plane_handles(pane, cut_before_, model.volume), pixel);
+    if (view.plane_handles) plane_handle_ = handle_at(plane_handles(pane, cut_before_, model.volume), pixel);
     if (view.cut_box) handle_ = handle_at(cut_handles(pane, cut_before_, model.volume), pixel);
     return plane_handle_ || handle_;
 }

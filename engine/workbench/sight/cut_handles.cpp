@@ -70,14 +70,6 @@ std::vector<CutHandle> cut_handles(const Pane& pane, const CutBox& cut, const Vo
     return handles;
 }
 
-std::optional<CutHandle> handle_at(const std::vector<CutHandle>& handles, const glm::dvec2& pixel)
-{
-    const auto away = [&](const CutHandle& handle) { return glm::distance(handle.at, pixel); };
-    const auto nearest = std::ranges::min_element(handles, {}, away);
-    if (nearest == handles.end() || away(*nearest) > HANDLE_PIXELS) return std::nullopt;
-    return *nearest;
-}
-
 CutBox dragged(const CutBox& cut, const CutHandle& handle, const Pane& pane, const VolumeInfo& volume,
                const glm::dvec2& from, const glm::dvec2& to)
 {

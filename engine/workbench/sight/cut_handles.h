@@ -7,11 +7,9 @@
 
 #include "engine/look/panes.h"
 #include "engine/look/settings.h"
+#include "engine/workbench/sight/handle_at.h"
 
 namespace shvr::ui {
-
-/// Maximum distance between a handle and the pointer that takes hold of it, in pixels.
-inline constexpr double HANDLE_PIXELS = 10.0;
 
 struct CutHandle {
     int axis = 0;
@@ -25,8 +23,6 @@ struct CutHandle {
 /// Returns the handles that can be dragged in a pane: none in maps and anaglyphs, and none of a face whose axis the
 /// pane sees end on.
 std::vector<CutHandle> cut_handles(const Pane& pane, const CutBox& cut, const VolumeInfo& volume);
-/// Returns the handle at a pixel: of several, the nearest.
-std::optional<CutHandle> handle_at(const std::vector<CutHandle>& handles, const glm::dvec2& pixel);
 /// Returns the box after a drag of a handle from one pixel to another. `cut` is the box before the drag. The face
 /// follows the pointer as far as the volume's end and the other face.
 CutBox dragged(const CutBox& cut, const CutHandle& handle, const Pane& pane, const VolumeInfo& volume,

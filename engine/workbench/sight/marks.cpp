@@ -201,7 +201,7 @@ private:
         const CutBox& cut = model_.session.cut;
         const std::vector<PlaneHandle> handles = plane_handles(pane_, cut, model_.volume);
         const bool is_below = model_.pointer && model_.pointer->pane == index_;
-        const auto held = is_below ? plane_handle_at(handles, model_.pointer->pixel) : std::optional<PlaneHandle>();
+        const auto held = is_below ? handle_at(handles, model_.pointer->pixel) : std::optional<PlaneHandle>();
         for (const auto& [from, to] : plane_lines(pane_, cut, model_.volume)) line(from, to, PLANE);
         for (const PlaneHandle& handle : handles) {
             const bool is_held = held == handle;

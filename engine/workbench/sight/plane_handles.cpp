@@ -211,14 +211,6 @@ std::vector<PlaneHandle> plane_handles(const Pane& pane, const CutBox& cut, cons
     return handles;
 }
 
-std::optional<PlaneHandle> plane_handle_at(const std::vector<PlaneHandle>& handles, const glm::dvec2& pixel)
-{
-    const auto away = [&](const PlaneHandle& handle) { return glm::distance(handle.at, pixel); };
-    const auto nearest = std::ranges::min_element(handles, {}, away);
-    if (nearest == handles.end() || away(*nearest) > HANDLE_PIXELS) return std::nullopt;
-    return *nearest;
-}
-
 CutBox dragged(const CutBox& cut, const PlaneHandle& handle, const Pane& pane, const VolumeInfo& volume,
                const glm::dvec2& from, const glm::dvec2& to)
 {

@@ -7,6 +7,7 @@
 
 #include "engine/look/panes.h"
 #include "engine/look/settings.h"
+#include "engine/workbench/sight/handle_at.h"
 
 namespace shvr::ui {
 
@@ -24,8 +25,6 @@ using PaneLine = std::pair<glm::dvec2, glm::dvec2>;
 /// that the plane does not cross. The handle that tilts is at the tip of the normal. The one that moves is at its foot
 /// or, where the normal points along the line of sight, below it: dragged up, it pushes the plane away.
 std::vector<PlaneHandle> plane_handles(const Pane& pane, const CutBox& cut, const VolumeInfo& volume);
-/// Returns the handle at a pixel: of two, the nearer.
-std::optional<PlaneHandle> plane_handle_at(const std::vector<PlaneHandle>& handles, const glm::dvec2& pixel);
 /// Returns the cut after a drag of a handle from one pixel to another. `cut` is the cut before the drag. The handle, or
 /// in slices the plane's line, follows the pointer. Moving keeps the normal, as far as the plane meets the volume.
 CutBox dragged(const CutBox& cut, const PlaneHandle& handle, const Pane& pane, const VolumeInfo& volume,

@@ -6,35 +6,10 @@
 
 #include <doctest/doctest.h>
 
+#include "tests/unit/ui/sight/slanted_pane.h"
+
 using namespace shvr;
 using namespace shvr::ui;
-
-namespace {
-
-VolumeInfo volume()
-{
-    VolumeInfo info;
-    info.size = {100, 80, 60};
-    info.spacing = {1.0, 2.0, 0.5};
-    return info;
-}
-
-Camera slanted(Camera::Projection projection)
-{
-    Camera camera;
-    camera.projection = projection;
-    camera.eye = {260.0, -150.0, 140.0};
-    camera.target = {50.0, 80.0, 15.0};
-    camera.height = 200.0;
-    return camera;
-}
-
-Pane pane_of(const Camera& camera)
-{
-    return {.kind = Pane::Kind::main, .shot = camera, .box = {{0, 0}, {640, 480}}, .name = "camera"};
-}
-
-}  // namespace
 
 TEST_CASE("a dragged face stays under the pointer, whatever the camera and the spacing")
 {

@@ -6,33 +6,12 @@
 
 #include <doctest/doctest.h>
 
+#include "tests/unit/ui/sight/slanted_pane.h"
+
 using namespace shvr;
 using namespace shvr::ui;
 
 namespace {
-
-VolumeInfo volume()
-{
-    VolumeInfo info;
-    info.size = {100, 80, 60};
-    info.spacing = {1.0, 2.0, 0.5};
-    return info;
-}
-
-Camera slanted(Camera::Projection projection)
-{
-    Camera camera;
-    camera.projection = projection;
-    camera.eye = {260.0, -150.0, 140.0};
-    camera.target = {50.0, 80.0, 15.0};
-    camera.height = 200.0;
-    return camera;
-}
-
-Pane pane_of(const Camera& camera)
-{
-    return {.kind = Pane::Kind::main, .shot = camera, .box = {{0, 0}, {640, 480}}, .name = "camera"};
-}
 
 Pane slice_across_z()
 {
@@ -77,8 +56,8 @@ TEST_CASE("the dragged handles of a plane stay under the pointer, and each chang
         const PlaneHandle move = handles(cut)[0], tilt = handles(cut)[1];
         CHECK(move.kind == PlaneHandle::Kind::move);
         CHECK(tilt.kind == PlaneHandle::Kind::tilt);
-        CHECK(plane_handle_at(handles(cut), tilt.at + glm::dvec2(1.0, 0.0)) == tilt);
-        CHECK(!plane_handle_at(handles(cut), glm::max(move.at, tilt.at) + 11.0));
+        CHECK(handle_at(handles(cut), tilt.at + glm::dvec2(1.0, 0.0)) == tilt);
+        CHECK(!handle_at(handles(cut), glm::max(move.at, tilt.at) + 11.0));
         // Five units along the normal, in physical space.
         const glm::dvec3 normal = glm::normalize(*cut.plane_normal);
         const glm::dvec3 wanted = *cut.plane_point * volume().spacing + 5.0 * normal;
