@@ -5,10 +5,6 @@ from harness import Volume
 from seen import Seen
 
 WINDOW = "Export annotation"
-# Most inputs of a task, counted by scripted walks: clicks and keys; a typed text counts as one.
-MOST = {"export mask, trace and measures": 2, "the same with the mouse": 3, "load a mask": 3,
-        "load a mask that is suggested, with the mouse": 3, "spacing": 4, "import a scan": 3, "set a value": 3}
-
 
 
 class Export(Seen):
@@ -142,119 +138,6 @@ class Export(Seen):
         self.see_no_more("", "Correct the spacing")
         self.finish()
         self.assertTrue((self.folder / "scan-project").is_dir())
-
-
-class Counts(Seen):
-    inputs = 0
-
-    def click(self, text, window=None):
-        self.click_on(text, window)
-        self.inputs += 1
-
-    def key(self, chord):
-        self.press(chord)
-        self.inputs += 1
-
-    def text(self, text, window):
-        self.do("type", "--delay", 30, text, pause_s=0)
-        self.see(str(text), window)
-        self.inputs += 1
-
-    def took(self, task):
-        self.assertLessEqual(self.inputs, MOST[task], task)
-        print(f"{task}: {self.inputs} inputs")
-        self.inputs = 0
-
-    def open_annotated(self):
-        session = self.write_ball(volume={"procedural": "sphere", "size": [32, 32, 32]})
-        self.check("annotate", session, "--script", self.write_script("s.jsonl", [
-            {"op": "paint", "brush": "fill", "region": "ball", "path": [[16, 16, 16]], "radius": 5, "threshold": 0,
-             "group": 1},
-            {"op": "node", "at": [16, 16, 16], "radius": 2, "group": 1}, {"op": "save"}]))
-        self.open_scan(session, preferences={"hints_seen": 3})
-        return session
-
-    def exported(self):
-        self.see("Exported ", "Status")
-        names = {path.suffix for path in self.folder.glob("*-m*")} | {path.suffix for path in self.folder.glob("*-trace.*")}
-        self.assertEqual(names, {".nrrd", ".csv", ".graphml"})
-
-    def test_exporting_mask_trace_and_measures(self):
-        self.open_annotated()
-        self.key("Ctrl+E")
-        self.see("Writes 3 files", "Export annotation")
-        self.key("Return")
-        self.exported()
-        self.took("export mask, trace and measures")
-        self.click("File", "##MainMenuBar")
-        self.click("Export...", "##Menu_00")
-        self.until(lambda: any("replaced" in seen["text"] for seen in self.seen(window="Export annotation")), "warning")
-        self.key("Return")
-        self.see_no_more("Cancel", "Export annotation")
-        self.exported()
-        self.took("the same with the mouse")
-        self.finish()
-
-    def test_loading_a_mask(self):
-        session = self.write_ball(volume={"procedural": "sphere", "size": [16, 16, 16]})
-        mask = self.folder / "leaf-mask.nrrd"
-        mask.write_bytes(b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 16 16 16\nencoding: raw\n\n" + b"\3" * 4096)
-        self.open_scan(session, preferences={"hints_seen": 3})
-        self.key("Ctrl+L")
-        self.see("Cancel", "Load annotation")
-        self.text(mask, "Load annotation")
-        self.see("+4096", "Load annotation")
-        self.key("Return")
-        self.see("Loaded the mask of ", "Status")
-        self.took("load a mask")
-        self.press("Ctrl+Z")
-        self.see("Undone", "Status")
-        self.click("File", "##MainMenuBar")
-        self.click("Load annotation...", "##Menu_00")
-        self.see("+4096", "Load annotation")   # the newest in the folder is suggested, and previewed
-        self.key("Return")
-        self.see("Loaded the mask of ", "Status")
-        self.took("load a mask that is suggested, with the mouse")
-        self.assertEqual(self.finish()["voxels_in_group"], {"3": 4096})
-
-    def test_the_size_of_a_voxel(self):
-        scan = Volume.noise((16, 16, 16), seed=1).write(self.folder)
-        session = self.write_session(volume={"path": scan.name})
-        self.open_scan(session, preferences={"hints_seen": 3})
-        self.click("File", "##MainMenuBar")
-        self.click("Correct the spacing...", "##Menu_00")
-        self.see("Cancel", "Correct the spacing")
-        self.text("0.8 0.8 1.2 um", "Correct the spacing")
-        self.key("Return")
-        self.until(lambda: [line for line in self.done() if line["op"] == "correct_spacing"], "correction")
-        self.took("spacing")
-        self.finish()
-        self.assertIn("1.2", session.read_text())
-
-    def test_importing_a_scan(self):
-        scan = Volume.noise((16, 16, 16), seed=1).write(self.folder)
-        self.view(preferences={"hints_seen": 3})
-        self.see("Open the example")
-        self.key("Ctrl+I")
-        self.see("Cancel", "Import as project")
-        self.text(scan, "Import as project")
-        self.see("The scan has 16 x 16 x 16 voxels", "Import as project")
-        self.key("Return")
-        self.see("Transfer function", "Side panel")
-        self.took("import a scan")
-        self.finish()
-        self.assertTrue((self.folder / f"{scan.stem}-project").is_dir())
-
-    def test_setting_a_value_by_its_label(self):
-        self.open_scan(self.write_ball(), preferences={"hints_seen": 3})
-        self.key("Ctrl+Shift+P")
-        self.see("", "Find anything")
-        self.text("ambient light 0.4", "Find anything")
-        self.key("Return")
-        self.until(lambda: {"op": "set", "values": {"light": {"ambient": 0.4}}} in self.done(), "ambient light")
-        self.see("Set ambient light from 0.3 to 0.4", "Status")
-        self.took("set a value")
-        self.finish()
 
 
 if __name__ == "__main__":
