@@ -154,13 +154,19 @@ void run_variant(const GoldenCommandOptions& options, const golden::Variant& var
     std::vector<std::string> arguments{"shvr", "golden",        "run",     options.pattern, "--folder", options.folder,
                                        "-o",   output.string(), "--quiet", "--json",        "--light"};
     if (!options.common.device.empty()) arguments.insert(arguments.end(), {"--device", options.common.device});
+    // Mesa's shader cache does not distinguish vector widths: with a shared one, all variants would run the code that
+    // was compiled first.
+    const std::string cache = fs::absolute(output / "shader-cache").string();
+    fs::create_directories(cache);
+    std::vector<std::pair<std::string, std::string>> changed = variant.environment;
+    changed.insert(changed.end(), {{"MESA_SHADER_CACHE_DIR", cache}, {"XDG_CACHE_HOME", cache}});
     std::vector<std::string> environment;
     for (char** entry = environ; *entry; ++entry) {
         const std::string text = *entry, name = text.substr(0, text.find('='));
         const auto is_it = [&](const auto& pair) { return pair.first == name; };
-        if (std::ranges::none_of(variant.environment, is_it)) environment.push_back(text);
+        if (std::ranges::none_of(changed, is_it)) environment.push_back(text);
     }
-    for (const auto& [name, value] : variant.environment) environment.push_back(name + "=" + value);
+    for (const auto& [name, value] : changed) environment.push_back(name + "=" + value);
     const auto pointers = [](std::vector<std::string>& texts) {
         std::vector<char*> all;
         for (std::string& text : texts) all.push_back(text.data());

@@ -230,6 +230,9 @@ class Golden(CliTest):
         self.assertEqual((name, row["class"], row["holds"]), ("spheres", "tight", "yes"))
         self.assertEqual([row[variant] == "0" for variant in VARIANTS],
                          [one["variants"][variant]["light"] == 0 for variant in VARIANTS])
+        # A shader cache does not distinguish vector widths: a shared one would draw all variants by the same code.
+        for name in VARIANTS:
+            self.assertTrue(any((self.folder / "golden-results" / name / "shader-cache").rglob("*")), name)
         self.golden("calibrate", "--table", "calibration.txt", status=2)
 
     def test_every_golden_of_the_tree_is_calibrated_in_its_class(self):
