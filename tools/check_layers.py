@@ -54,7 +54,7 @@ MAY_INCLUDE = {
     "engine/annotation/work": "engine/base engine/volume engine/annotation engine/annotation/files "
     "engine/annotation/trace engine/annotation/writers engine/projects",
     "engine/session": "engine/base engine/touch engine/volume engine/look engine/annotation engine/annotation/files "
-    "engine/annotation/trace engine/remote engine/formats engine/formats/zarr engine/projects",
+    "engine/annotation/measures engine/annotation/trace engine/remote engine/formats engine/formats/zarr engine/projects",
     "engine/movie": "engine/base engine/look engine/session engine/tasks",
     "engine/session/looks": "engine/base engine/session",
     "engine/session/words": "engine/base engine/annotation engine/session",

@@ -223,7 +223,12 @@ void Viewport::click(const Model& model, Actions& actions)
                 actions.emplace_back(NodeAt{pane_, pixel});
             break;
         case Tool::select: actions.emplace_back(SelectAt{pane_, pixel, is_second_}); break;
-        case Tool::measure: actions.emplace_back(MeasureAt{pane_, pixel}); break;
+        case Tool::measure:
+            if (is_second_ && model.session.probe.measure == MeasureKind::path)
+                actions.emplace_back(EndMeasure{});
+            else
+                actions.emplace_back(MeasureAt{pane_, pixel});
+            break;
         case Tool::paint:
         case Tool::erase: break;
     }
@@ -243,7 +248,7 @@ void Viewport::begin_drag(const Model& model, Actions& actions)
 {
     if (model.tool() == Tool::measure) {  // from the press to the release
         gesture_ = Gesture::measure;
-        if (!model.measuring_from) actions.emplace_back(MeasureAt{pane_, in_pane(pressed_, model)});
+        if (model.measuring.empty()) actions.emplace_back(MeasureAt{pane_, in_pane(pressed_, model)});
         return;
     }
     if (!pressed_node_ || !model.trace.nodes().contains(*pressed_node_)) {

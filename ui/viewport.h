@@ -8,7 +8,7 @@
 //   paint     paints, while the button is held, at the visible point under the pointer; erase likewise
 //   trace     a click on a node selects it, a drag moves it; a click elsewhere adds a node; any other drag turns
 //   select    a click selects, a double click the whole segment; a drag turns
-//   measure   clicks set the ends of a distance, and so do the ends of a drag
+//   measure   clicks set points, and so do the ends of a drag; a double click ends a path
 //
 //   no button          the probe follows in its plane; with paint, erase, trace and measure, it follows visible points.
 //                      Slices stay where they are; with Shift they go through the visible point under the pointer

@@ -21,7 +21,7 @@ std::optional<ProbeLook> shown_probe(const Session& session, Renderer& renderer,
 {
     const VolumeInfo& volume = renderer.volume().info();
     std::optional<ProbeLook> look = shown_probe(session, volume, renderer.statistics());
-    if (look && session.probe.preview)
+    if (look && session.probe.preview.value_or(false))
         look->preview = std::make_shared<PaintPreview>(
             annotator.preview(in_session(dab_of(session, volume, renderer.statistics()), session)));
     return look;

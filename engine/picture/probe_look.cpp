@@ -17,13 +17,14 @@ std::optional<ProbeLook> shown_probe(const Session& session, const VolumeInfo& v
                                      const VolumeStatistics& statistics)
 {
     const ProbeSettings& probe = session.probe;
-    if (!probe.shown && !probe.shell && !probe.preview) return std::nullopt;
+    const bool previews = probe.preview.value_or(false);
+    if (!probe.shown && !probe.shell && !previews) return std::nullopt;
     ProbeLook look{.center = probe.voxel.value_or(0.5 * glm::dvec3(volume.size)) * volume.spacing,
                    .radius = probe.brush.radius_voxels * volume.spacing.x,
                    .color = probe_color(session, probe.brush.group),
-                   .ball_share = !probe.shown                   ? 0.0
-                                 : probe.shell || probe.preview ? BALL_IN_SHELL
-                                                                : 1.0,
+                   .ball_share = !probe.shown              ? 0.0
+                                 : probe.shell || previews ? BALL_IN_SHELL
+                                                           : 1.0,
                    .ball_opacity = probe.opacity};
     look.has_silhouette = probe.silhouette;
     look.has_arrow = probe.arrow;
@@ -32,6 +33,12 @@ std::optional<ProbeLook> shown_probe(const Session& session, const VolumeInfo& v
             .threshold = probe.brush.threshold.value_or(automatic_threshold(session.transfer_function, statistics)),
             .opacity = probe.shell_opacity,
             .is_box = probe.brush.region == RegionShape::box};
+    return look;
+}
+
+std::optional<ProbeLook> in_picture(std::optional<ProbeLook> look, PictureProbe shown)
+{
+    if (look && shown == PictureProbe::point) look->ball_share = BALL_IN_SHELL;
     return look;
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "engine/annotation/work/paint_preview.h"
+#include "engine/session/picture_session.h"
 #include "engine/session/session.h"
 
 namespace shvr {
@@ -40,6 +41,8 @@ glm::dvec3 probe_color(const Session& session, uint8_t group);
 /// Returns the probe as pictures of the session show it; null if they show none.
 std::optional<ProbeLook> shown_probe(const Session& session, const VolumeInfo& volume,
                                      const VolumeStatistics& statistics);
+/// Returns the probe of a picture that shows it in that way.
+std::optional<ProbeLook> in_picture(std::optional<ProbeLook> look, PictureProbe shown);
 /// Returns the voxels around the probe's shell, which is drawn even in hidden voxels; null if there is no shell.
 std::optional<VoxelBox> voxels_of_shell(const std::optional<ProbeLook>& probe, const VolumeInfo& volume);
 

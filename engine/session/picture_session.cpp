@@ -13,6 +13,7 @@ namespace {
 
 const char *const SESSION_TEXT = "SHVR session", *const PROJECT_TEXT = "SHVR project",
                   *const OUTLINE_TEXT = "SHVR outline";
+const char *const NO_OUTLINE = "none", *const POINT = "point";
 const char* const CAMERA_OF_PICTURE = "picture";
 
 bool is_picture_name(const fs::path& path)
@@ -37,19 +38,24 @@ PictureTexts texts_of_picture(Session session, const Camera& camera, const fs::p
 {
     session.cameras[CAMERA_OF_PICTURE] = camera;
     session.camera_name = CAMERA_OF_PICTURE;
-    if (probe == PictureProbe::none) session.probe.shown = session.probe.shell = session.probe.preview = false;
-    if (probe == PictureProbe::plain) session.probe.shown = true;
+    if (probe == PictureProbe::none) {
+        session.probe.shown = session.probe.shell = false;
+        session.probe.preview = false;
+    }
+    const bool is_of_window = probe == PictureProbe::plain || probe == PictureProbe::point;
+    if (is_of_window) session.probe.shown = true;
     PictureTexts texts{{SESSION_TEXT, to_text(session, folder_of(picture))}};
-    if (probe == PictureProbe::plain) texts.emplace_back(OUTLINE_TEXT, "none");
+    if (is_of_window) texts.emplace_back(OUTLINE_TEXT, probe == PictureProbe::point ? POINT : NO_OUTLINE);
     if (!project.empty())
         texts.emplace_back(PROJECT_TEXT,
                            fs::absolute(project).lexically_normal().lexically_proximate(folder_of(picture)).string());
     return texts;
 }
 
-bool outlines_probe(const fs::path& picture)
+PictureProbe probe_of_picture(const fs::path& picture)
 {
-    return !is_picture_name(picture) || text_in(picture, OUTLINE_TEXT) != "none";
+    const std::optional<std::string> text = is_picture_name(picture) ? text_in(picture, OUTLINE_TEXT) : std::nullopt;
+    return text == NO_OUTLINE ? PictureProbe::plain : text == POINT ? PictureProbe::point : PictureProbe::as_rendered;
 }
 
 std::optional<PictureSession> session_in_picture(const fs::path& picture)

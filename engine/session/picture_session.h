@@ -5,7 +5,7 @@
 //                    the picture's folder
 //   "SHVR project"   the session file from which the picture was made, relative to the picture's folder; absent for a
 //                    bare volume. The journal next to the session file contains the annotation
-//   "SHVR outline"   "none" if the probe has no outline
+//   "SHVR outline"   "none" if the probe has no outline; "point" if it is a point without one
 //
 // A picture does not contain annotation. If annotation has changed since the picture was made, a new picture shows its
 // current state. Programs that re-encode pictures drop the text chunks. Any thread may call these.
@@ -21,13 +21,14 @@ namespace shvr {
 enum class PictureProbe {
     none,
     plain,        ///< the probe is drawn as in the window: always, and without its outline
+    point,        ///< likewise, as the point that the window draws inside the outline
     as_rendered,  ///< the probe is drawn as by `shvr render`: if the session shows it, with its outline
 };
 /// `picture`: path of the picture's file. `project`: the value of "SHVR project" above; may be empty.
 PictureTexts texts_of_picture(Session session, const Camera& camera, const std::filesystem::path& picture,
                               const std::filesystem::path& project, PictureProbe probe);
-/// Whether pictures rendered from this picture file outline the probe. False for a picture taken in the window.
-bool outlines_probe(const std::filesystem::path& picture);
+/// Returns how pictures rendered from this file show the probe; `as_rendered` unless it was taken in the window.
+PictureProbe probe_of_picture(const std::filesystem::path& picture);
 
 struct PictureSession {
     std::string text;

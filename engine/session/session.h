@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/annotation/brush.h"
+#include "engine/annotation/measures/measurement.h"
 #include "engine/formats/open_volume.h"
 #include "engine/look/camera.h"
 #include "engine/look/groups.h"
@@ -56,11 +57,11 @@ inline constexpr double MIN_WORKSPACE_SCALE = 0.01, MAX_WORKSPACE_SCALE = 100.0;
 ///   erase     removes paint of any group while held
 ///   trace     a click away from all nodes adds a node, linked to the selected node; on a node, it selects or drags it
 ///   select    selects the node or internode that is clicked
-///   measure   clicks set the two ends of a distance, one after the other
+///   measure   clicks set the points of a distance, a path or an angle
 ///
-/// F, the stylus and, with the turn tool, the right button paint; they erase with the erase tool, and add a node with
-/// the trace tool. Alt + left rotates with every tool, and so do the middle and the right button with all tools except
-/// turn. Shift + left and Shift + middle pan, as the middle button does with the turn tool.
+/// F and the stylus paint; they erase with the erase tool, and add a node with the trace tool. With the turn tool the
+/// right button zooms and the middle one pans. Alt + left rotates with every tool, and so do the middle and the right
+/// button with all tools except turn. Shift + left and Shift + middle pan.
 enum class Tool { turn, paint, erase, trace, select, measure };
 inline constexpr Spelling<Tool> TOOLS[] = {{Tool::turn, "turn"},     {Tool::paint, "paint"},
                                            {Tool::erase, "erase"},   {Tool::trace, "trace"},
@@ -109,8 +110,10 @@ struct ProbeSettings {
     /// painting would raise above the threshold.
     bool shell = false;
     double shell_opacity = 0.4;  ///< opacity of each crossing of a ray with this surface
-    bool preview = false;        ///< draws the brush's effect at the probe
+    /// Draws the brush's effect at the probe. Default: the window does while a tool that paints is in hand.
+    std::optional<bool> preview;
     Tool tool = Tool::turn;
+    MeasureKind measure = MeasureKind::distance;  ///< what the tool that measures begins
     bool guided = false;
     ProxyLaw guidance = ProxyLaw::potential;
     FeelSettings touch;
@@ -123,6 +126,11 @@ struct ProbeSettings {
                                                ///< measuring succeeds
     bool centered_nodes = true;                ///< places clicked nodes at the centre of the visible structure, not on
                                                ///< its wall
+    /// Returns whether the window draws the brush's effect.
+    bool previews() const
+    {
+        return tool != Tool::trace && preview.value_or(tool == Tool::paint || tool == Tool::erase);
+    }
     /// Returns the group that painting assigns to voxels: the active group, or 0 to erase.
     uint8_t painted_group() const { return tool == Tool::erase ? uint8_t(0) : brush.group; }
     bool operator==(const ProbeSettings&) const = default;
@@ -130,14 +138,6 @@ struct ProbeSettings {
 
 /// Maximum number of surfaces in one session file.
 inline constexpr size_t MAX_SESSION_SURFACES = 100'000;
-
-/// A distance that the user measured. Its two points are in voxels, so that it follows changes of the spacing.
-struct Measurement {
-    glm::dvec3 from{0.0}, to{0.0};
-    bool operator==(const Measurement&) const = default;
-};
-/// The limit bounds the undo history, in which each step stores all measurements before and after it.
-inline constexpr size_t MAX_MEASUREMENTS = 1000;
 
 struct Session {
     std::filesystem::path volume_path;  ///< absolute, or empty if `procedural` is set

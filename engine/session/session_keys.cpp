@@ -419,10 +419,12 @@ void fields(Fields& f, ProbeSettings& probe)
            {"true: shows an iso-surface at the paint threshold in the probe's region, the boundary of what painting "
             "reaches"});
     f.number("shell_opacity", probe.shell_opacity, SHARE, {"opacity of one crossing of the iso-surface"});
-    f.flag("preview", probe.preview,
-           {"true: highlights the voxels that painting would change now, in pictures and slices; striped where it "
-            "would erase"});
+    f.any_flag("preview", probe.preview,
+               {.meaning = "true: highlights the voxels that painting would change now, in pictures and slices; "
+                           "striped where it would erase",
+                .standard = "true in the window while a tool that paints is in hand, false in pictures"});
     f.choice("tool", probe.tool, {"function of the left mouse button in the window"});
+    f.choice("measure", probe.measure, {"what the window's tool for measuring begins"});
     f.flag("guided", probe.guided, {"true: the window pulls the probe to voxels at or above the haptic threshold"});
     f.choice("guidance", probe.guidance, {"force law of the pull"});
     f.section("touch", probe.touch);
@@ -495,15 +497,43 @@ void look_fields(Fields& f, Session& session)
 
 void fields(Fields& f, Measurement& measurement)
 {
-    const char* const ALLOWED = "`[x, y, z]`, in voxels; 0.5 is the middle of the first";
-    f.vector("from", measurement.from, COORDINATE, {.meaning = "one end", .allowed = ALLOWED, .is_required = true});
-    f.vector("to", measurement.to, COORDINATE, {.meaning = "the other end", .allowed = ALLOWED, .is_required = true});
+    f.text("name", measurement.name, {.meaning = "name", .standard = "its kind and its number"});
+    f.choice("kind", measurement.kind,
+             {"distance of two points, length of a path along two or more, or angle at the second of three points"});
+    const auto read = [&](const JsonNode& node) {
+        measurement.points.clear();
+        for (const JsonNode& point : node.elements(2, MAX_MEASURED_POINTS))
+            measurement.points.push_back(point.vector(COORDINATE));
+    };
+    const auto written = [&]() -> std::optional<std::string> {
+        if (measurement.points.empty()) return std::nullopt;
+        std::string text;
+        for (const glm::dvec3& point : measurement.points)
+            text += sentence(text.empty() ? "[[" : ",[", digits_of(point.x), ',', digits_of(point.y), ',',
+                             digits_of(point.z), ']');
+        return text + ']';
+    };
+    f.other("points", read, written,
+            {.meaning = "its points",
+             .allowed = "array of 2 ... 200 `[x, y, z]`, in voxels; 0.5 is the middle of the first",
+             .standard = "required, or `from` and `to`"});
+    static_assert(MAX_MEASURED_POINTS == 200);
+    std::optional<glm::dvec3> from, to;  // as earlier versions wrote distances
+    const About end{.meaning = "an end of a distance, in files of earlier versions, which have no `points`",
+                    .allowed = "`[x, y, z]`, in voxels",
+                    .standard = "none"};
+    f.vector("from", from, COORDINATE, end);
+    f.vector("to", to, COORDINATE, end);
+    if (from && to && measurement.points.empty()) measurement.points = {*from, *to};
+    f.check("points", is_count_of(measurement.kind, measurement.points.size()),
+            "2 points for a distance, 2 or more for a path and 3 for an angle");
 }
 
 namespace {
 
-const About MEASUREMENTS{
-    .meaning = "measured distances, shown in the window", .allowed = "array of at most 1000", .standard = "none"};
+const About MEASUREMENTS{.meaning = "distances, paths and angles measured in the window",
+                         .allowed = "array of at most 1000",
+                         .standard = "none"};
 static_assert(MAX_MEASUREMENTS == 1000);
 
 void work_fields(Fields& f, Session& session)

@@ -108,6 +108,9 @@ void fields(Fields& f, ExportTask& task)
     f.choice("space", task.space, {"of trace and mesh: where other programs show the volume, or voxel * spacing"});
     f.path("metrics", task.metrics,
            {.meaning = "counts, lengths, angles, radii, topology, patterns of flower heads: .csv", .standard = "none"});
+    f.path("measurements", task.measurements,
+           {.meaning = "distances, paths and angles measured in the window, with the unit in the headings: .csv",
+            .standard = "none"});
     f.text("sections", task.sections,
            {.meaning = "for metrics, the groups of a flower head's parts, such as abaxial=1+4,adaxial=2,floret=3",
             .standard = "groups whose names have these words, or 1, 2, 3"});
@@ -126,7 +129,7 @@ void fields(Fields& f, ExportTask& task)
 std::vector<std::filesystem::path> replaced_files(const ExportTask& task)
 {
     std::vector<std::filesystem::path> found;
-    for (const auto& path : {task.mask, task.offset, task.trace, task.mesh, task.metrics}) {
+    for (const auto& path : {task.mask, task.offset, task.trace, task.mesh, task.metrics, task.measurements}) {
         std::error_code ignored;
         if (!path.empty() && std::filesystem::exists(path, ignored)) found.push_back(path);
     }
@@ -144,12 +147,14 @@ AnnotationSnapshot::AnnotationSnapshot(const AnnotationView& view)
       project_(view.project),
       volume_path_(view.volume_path),
       trace_path_(view.trace_path),
-      mask_path_(view.mask_path)
+      mask_path_(view.mask_path),
+      measurements_(view.measurements.begin(), view.measurements.end())
 {}
 
 AnnotationView AnnotationSnapshot::view() const
 {
-    return {volume_, mask_, density_, trace_, groups_, volume_hash_, project_, volume_path_, trace_path_, mask_path_};
+    return {volume_,  mask_,        density_,    trace_,     groups_,      volume_hash_,
+            project_, volume_path_, trace_path_, mask_path_, measurements_};
 }
 
 void check(const ExportTask& task)
@@ -163,9 +168,13 @@ void check(const ExportTask& task)
         check_output_folder(task.mask);
     else if (!task.mask.empty())
         check_output_place(task.mask);
-    const std::pair<const char*, const std::filesystem::path&> outputs[] = {
-        {"mask", task.mask}, {"offset", task.offset},   {"trace", task.trace},
-        {"mesh", task.mesh}, {"metrics", task.metrics}, {"surface", task.surface}};
+    const std::pair<const char*, const std::filesystem::path&> outputs[] = {{"mask", task.mask},
+                                                                            {"offset", task.offset},
+                                                                            {"trace", task.trace},
+                                                                            {"mesh", task.mesh},
+                                                                            {"metrics", task.metrics},
+                                                                            {"surface", task.surface},
+                                                                            {"measurements", task.measurements}};
     for (const auto& [key, path] : outputs)
         for (const auto& [other, same] : outputs)
             if (&path != &same && !path.empty() && !same.empty() && plain(path) == plain(same))
@@ -178,6 +187,7 @@ void check(const ExportTask& task)
     check_output(name("trace"), task.trace, {".txt", ".swc", ".graphml", ".rsml"});
     check_output(name("mesh"), task.mesh, {".obj", ".ply"});
     check_output(name("metrics"), task.metrics, {".csv"});
+    check_output(name("measurements"), task.measurements, {".csv"});
     if (!task.surface.empty()) check(surface_task_of(task));
     for (const auto& [key, text] : {std::pair<const char*, const std::string&>("sections", task.sections),
                                     std::pair<const char*, const std::string&>("axis", task.axis)})
@@ -196,9 +206,12 @@ void check(const ExportTask& task)
 void check(const ExportTask& task, const AnnotationView& annotation)
 {
     check(task);
-    for (const auto& path : {task.mask, task.offset, task.trace, task.mesh, task.metrics})
+    for (const auto& path : {task.mask, task.offset, task.trace, task.mesh, task.metrics, task.measurements})
         check_output_is_not(annotation.volume_path, path);
     if (!task.trace.empty() || !task.mesh.empty()) expect_trace(annotation);
+    if (!task.measurements.empty() && annotation.measurements.empty())
+        fail(option_name(task.names, "measurements"), " is '", task.measurements.string(),
+             "' but nothing is measured; expected distances, paths or angles from the window's tool Measure");
     static_cast<void>(project_labels(task, annotation.project));
     if (!task.surface.empty()) check(surface_task_of(task), annotation);
 }
@@ -208,7 +221,8 @@ ExportResult run(const ExportTask& asked, const AnnotationView& annotation, Prog
 {
     check(asked, annotation);
     ExportTask task = asked;
-    for (std::filesystem::path* path : {&task.mask, &task.offset, &task.trace, &task.mesh, &task.metrics})
+    for (std::filesystem::path* path :
+         {&task.mask, &task.offset, &task.trace, &task.mesh, &task.metrics, &task.measurements})
         if (!path->empty()) *path = written_path(*path);
     const TraceSpace space = space_of(annotation.volume);
     ExportResult result = summary_of(annotation);
@@ -252,6 +266,11 @@ ExportResult run(const ExportTask& asked, const AnnotationView& annotation, Prog
     if (!task.surface.empty())
         run(surface_task_of(task), annotation, reporter,
             [&](const SurfaceResult& so_far) { note(so_far.written.back()); });
+    if (!task.measurements.empty()) {
+        const std::string text = measurements_table(annotation.measurements, space, task.space, ',');
+        write_file_atomically(task.measurements, std::as_bytes(std::span(text)));
+        note(task.measurements);
+    }
     return result;
 }
 

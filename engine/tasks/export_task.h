@@ -7,9 +7,12 @@
 
 #include <functional>
 #include <map>
+#include <span>
+#include <vector>
 
 #include "engine/annotation/density.h"
 #include "engine/annotation/mask.h"
+#include "engine/annotation/measures/measurement.h"
 #include "engine/annotation/trace/trace_file.h"
 #include "engine/look/groups.h"
 #include "engine/tasks/task_options.h"
@@ -26,7 +29,7 @@ struct ExportTask {
     static constexpr const char* TITLE = "Export annotation";
 
     // Files to write; empty: not written.
-    std::filesystem::path mask, offset, trace, mesh, metrics;
+    std::filesystem::path mask, offset, trace, mesh, metrics, measurements;
     bool labels = false;       ///< also writes the mask as labels/mask in the project
     bool break_loops = false;  ///< removes loops of the trace, for formats that can only hold trees
     Positions space = Positions::physical;
@@ -58,6 +61,7 @@ struct AnnotationView {
     std::filesystem::path volume_path{};  ///< see Session::volume_path; no output may replace it
     std::filesystem::path trace_path{};   ///< see Session::trace_path; used in messages if there is no trace
     std::filesystem::path mask_path{};    ///< mask file whose header an export keeps (mask_segments.h); may be missing
+    std::span<const Measurement> measurements{};
 };
 
 /// An independent copy of the annotation. Any thread may read and destroy it.
@@ -76,6 +80,7 @@ private:
     Groups groups_;
     std::string volume_hash_;
     std::filesystem::path project_, volume_path_, trace_path_, mask_path_;
+    std::vector<Measurement> measurements_;
 };
 
 struct ExportResult {

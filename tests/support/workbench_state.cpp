@@ -114,7 +114,7 @@ State state_of(const ui::Workbench& bench, const std::filesystem::path& folder)
         state["trace"] += sentence("; r", int(group), ' ', radius);
     state["selection"] = text_of(model.trace.selection());
     state["offsets"] = sentence(bench.document().annotator.document().density.voxels());
-    state["measured"] = sentence(model.measurements.size(), model.measuring_from.has_value());
+    state["measured"] = sentence(model.measurements.size(), model.measuring.size());
     state["drags"] = sentence(model.drags_node);
     state["painting"] = sentence(model.is_painting);
     state["undo"] = sentence(model.undoable);

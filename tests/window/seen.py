@@ -15,7 +15,8 @@ KEY_NAMES = {",": "comma", ".": "period", "/": "slash", "=": "equal", "-": "minu
              "]": "bracketright", "PageUp": "Prior", "PageDown": "Next", "Space": "space", "Enter": "Return"}
 
 PANELS = {"transfer_function": "Transfer function", "groups": "Colour groups", "probe": "Brush and probe",
-          "touch": "Touch and guidance", "trace": "Tracing", "trace_list": "Tracing list", "light": "Light and depth",
+          "touch": "Touch and guidance", "trace": "Tracing", "trace_list": "Tracing list",
+          "measurements": "Measurements", "light": "Light and depth",
           "occlusion": "Ambient occlusion", "cuts": "Cutting planes", "quality": "Render quality",
           "aids": "What is shown", "views": "Views", "history": "History"}   # with their titles
 

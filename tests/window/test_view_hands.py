@@ -112,8 +112,8 @@ class Hands(Seen):
         report = self.finish()
         said = "\n".join(report["messages"])
         self.assertRegex(said, r"Distance 1: [0-9.]+ voxels")
-        self.assertIn("1 distance is on the clipboard", said)
-        self.assertNotIn("Distances are removed", said)   # nothing would bring them back
+        self.assertIn("1 measurement is on the clipboard", said)
+        self.assertNotIn("Measurements are removed", said)   # nothing would bring them back
 
     def test_in_a_slice_the_brush_paints_and_the_contrast_is_dragged(self):
         session, x, y = self.begin("paint")

@@ -17,7 +17,7 @@ namespace {
 
 struct ExportCommandOptions {
     Common common;
-    std::string project, mask, offset, trace, mesh, surface, metrics;
+    std::string project, mask, offset, trace, mesh, surface, metrics, measurements;
     std::string space = "physical";
     std::string split;  ///< as add_task_option has it
     ExportTask task{.names = OptionNames::command_line};
@@ -32,6 +32,7 @@ ExportTask task_of(const ExportCommandOptions& options)
     task.trace = options.trace;
     task.mesh = options.mesh;
     task.metrics = options.metrics;
+    task.measurements = options.measurements;
     task.space = options.space == "volume" ? Positions::volume : Positions::physical;
     return task;
 }
@@ -60,7 +61,8 @@ void check_names(const SurfaceTask& surface, const std::vector<std::filesystem::
         return std::filesystem::absolute(path).lexically_normal();
     };
     for (const std::filesystem::path& file : files)
-        for (const std::filesystem::path& other : {task.mask, task.offset, task.trace, task.mesh, task.metrics})
+        for (const std::filesystem::path& other :
+             {task.mask, task.offset, task.trace, task.mesh, task.metrics, task.measurements})
             if (!other.empty() && plain(other) == plain(file))
                 throw UsageError(sentence(option_name(surface.names, "surface"), " and another option name '",
                                           file.string(), "'; expected two names"));
@@ -101,7 +103,8 @@ struct Outputs {
 std::filesystem::path first_output(const ExportCommandOptions& options, const Outputs& outputs)
 {
     const ExportTask& task = outputs.task;
-    for (const std::filesystem::path& path : {task.mask, task.offset, task.trace, task.mesh, task.metrics})
+    for (const std::filesystem::path& path :
+         {task.mask, task.offset, task.trace, task.mesh, task.metrics, task.measurements})
         if (!path.empty()) return path;
     if (task.labels) return std::filesystem::path(options.project) / "labels" / "mask";
     if (outputs.surface) return outputs.surface->surface;
@@ -114,7 +117,8 @@ Outputs part_of(Outputs outputs, const TaskChoice& choice)
     int64_t number = 0;
     const auto is_other = [&](bool is_wanted) { return is_wanted && number++ % choice.of != choice.index; };
     ExportTask& task = outputs.task;
-    for (std::filesystem::path* path : {&task.mask, &task.offset, &task.trace, &task.mesh, &task.metrics})
+    for (std::filesystem::path* path :
+         {&task.mask, &task.offset, &task.trace, &task.mesh, &task.metrics, &task.measurements})
         if (is_other(!path->empty())) path->clear();
     if (is_other(task.labels)) task.labels = false;
     if (task.metrics.empty()) {
@@ -182,7 +186,8 @@ Json write_outputs(const ExportCommandOptions& options, const Outputs& whole, co
                                     .project = options.project,
                                     .volume_path = opened.session.volume_path,
                                     .trace_path = opened.session.trace_path,
-                                    .mask_path = work.mask_of_header()};
+                                    .mask_path = work.mask_of_header(),
+                                    .measurements = opened.session.measurements};
     if (whole.surface) {
         check(whole.task, annotation);
         check(*whole.surface, annotation);
@@ -270,13 +275,16 @@ void add_export(CLI::App& program)
         "Host memory that surfaces may take; unless stated, three quarters of what the process was given");
     command
         ->add_option("--space", options->space,
-                     "Of trace, mesh and surfaces: physical, where other programs show the volume, with the origin at "
+                     "Of trace, mesh, surfaces and measurements: physical, where other programs show the volume, with "
+                     "the origin at "
                      "the centre "
                      "of voxel 0 unless the file states another place; or volume, voxel * spacing, with the origin at "
                      "the outer corner of voxel 0")
         ->check(CLI::IsMember({"physical", "volume"}));
     command->add_option("--metrics", options->metrics,
                         "Counts, lengths, angles, radii, topology, and patterns of flower heads (.csv)");
+    command->add_option("--measurements", options->measurements,
+                        "Distances, paths and angles measured in the window, with the unit in the headings (.csv)");
     command->add_option("--sections", options->task.sections,
                         "For --metrics: the groups of a flower head's parts, such as abaxial=1+4,adaxial=2,floret=3; "
                         "unless given, groups whose names have these words, or else 1, 2 and 3");

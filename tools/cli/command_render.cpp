@@ -174,11 +174,12 @@ void run_render(RenderCommandOptions options)
     Opened opened = open_input(options, work, check);
     const std::string& wanted = options.camera.empty() ? opened.session.camera_name : options.camera;
     const Camera camera = camera_named(opened.session, wanted, opened.source->info());
-    const std::optional<ProbeLook> probe = shown_probe(opened.session, *opened.renderer, *opened.annotator);
+    const PictureProbe kept_probe = probe_of_picture(options.input);
+    const std::optional<ProbeLook> probe =
+        in_picture(shown_probe(opened.session, *opened.renderer, *opened.annotator), kept_probe);
     const Progress progress = work.begin("drawing " + options.output);
-    const PictureProbe kept_probe = outlines_probe(options.input) ? PictureProbe::as_rendered : PictureProbe::plain;
     const RenderOptions how{.probe = probe,
-                            .outlines_probe = outlines_probe(options.input),
+                            .outlines_probe = kept_probe == PictureProbe::as_rendered,
                             .count_work = options.common.json,
                             .progress = progress};
     PictureTexts texts = options.with_session

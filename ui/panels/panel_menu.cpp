@@ -239,7 +239,7 @@ void paint_menu(const Model& model, Actions& actions)
     shortcut_item("previous_group", model, actions);
     shortcut_item("new_group", model, actions);
     ImGui::Separator();
-    shortcut_item("preview", model, actions, model.session.probe.preview);
+    shortcut_item("preview", model, actions, model.session.probe.previews());
     ImGui::EndMenu();
 }
 
@@ -325,6 +325,8 @@ void tools_menu(const Model& model, Actions& actions)
     if (!begin_menu("Tools")) return;
     shortcut_item("tool_turn", model, actions, model.tool() == Tool::turn);
     shortcut_item("tool_measure", model, actions, model.tool() == Tool::measure);
+    shortcut_item("next_measure", model, actions);
+    shortcut_item("end_measure", model, actions);
     shortcut_item("copy_measurements", model, actions);
     shortcut_item("clear_measurements", model, actions);
     ImGui::Separator();

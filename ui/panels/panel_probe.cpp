@@ -154,16 +154,18 @@ bool density(const Model& model, BrushSettings& brush)
 
 void preview(const Model& model, Actions& actions)
 {
-    bool is_on = model.session.probe.preview;
+    bool is_on = model.session.probe.preview.value_or(true);
     label("Preview");
     if (ImGui::Checkbox(sentence("show changes", key_in_brackets("preview", model.keymap), "##preview").c_str(),
                         &is_on))
-        set(actions, model, [&](Session& s) { s.probe.preview = is_on; });
+        set(actions, model, [&](Session& s) { s.probe.preview = is_on ? std::nullopt : std::optional(false); });
     hint("Shows the voxels that painting would change here; striped where it would erase.");
     if (!is_on) return;
     label("");
     if (model.tool() == Tool::trace)
         ImGui::TextDisabled("not while tracing");
+    else if (!model.session.probe.previews())
+        ImGui::TextDisabled("with the tools Paint and Erase");
     else if (model.previewed_voxels)
         ImGui::Text("%lld voxels would change", static_cast<long long>(*model.previewed_voxels));
 }

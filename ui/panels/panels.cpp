@@ -40,7 +40,8 @@ void change(const PanelRow& row, const PanelLayout& changed, Actions& actions)
     actions.push_back(Prefer{patch_of_panel(row.id, changed)});
 }
 
-/// Returns the user's choice; without a choice, the tracing panel unfolds once a trace exists or is being made.
+/// Returns the user's choice; without a choice, the panels of traces and of measurements unfold once there is one, or
+/// one is being made.
 bool is_folded(const PanelRow& row, const Model& model)
 {
     const WindowLayout& layout = model.preferences.layout;
@@ -48,6 +49,8 @@ bool is_folded(const PanelRow& row, const Model& model)
     const bool is_chosen = found != layout.panels.end() && found->second.folded;
     if (!is_chosen && std::strcmp(row.id, "trace") == 0)
         return model.trace.nodes().empty() && model.tool() != Tool::trace;
+    if (!is_chosen && std::strcmp(row.id, "measurements") == 0)
+        return model.measurements.empty() && model.tool() != Tool::measure;
     return layout.is_folded(row);
 }
 

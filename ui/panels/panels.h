@@ -33,6 +33,7 @@ void probe_panel(const Model& model, Actions& actions);
 void touch_panel(const Model& model, Actions& actions);
 void trace_panel(const Model& model, Actions& actions);
 void trace_list_panel(const Model& model, Actions& actions);
+void measurements_panel(const Model& model, Actions& actions);
 void light_panel(const Model& model, Actions& actions);
 void occlusion_panel(const Model& model, Actions& actions);
 void cuts_panel(const Model& model, Actions& actions);
@@ -51,6 +52,7 @@ inline constexpr PanelBody PANEL_BODIES[] = {
     {"touch", touch_panel},
     {"trace", trace_panel},
     {"trace_list", trace_list_panel},
+    {"measurements", measurements_panel},
     {"light", light_panel},
     {"occlusion", occlusion_panel},
     {"cuts", cuts_panel},

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 #include "engine/session/session_keys.h"
 #include "engine/session/words/number_words.h"
 #include "engine/session/words/setting_labels.h"
@@ -30,7 +31,7 @@ constexpr SectionRow SECTIONS[] = {
     {"light", "light", "the light"},
     {"blend", "blend", "distance blending"},
     {"cut", "cut", "the cutting planes"},
-    {"measurements", "measurements", "the distances"},
+    {"measurements", "measurements", "the measurements"},
     {"render", "render", "the rendering"},
     {"picture", "render", "the look of the picture"},
     {"view", "view", "the panes"},
@@ -169,14 +170,27 @@ std::vector<std::string> plane_changes(const json& was, const json& is)
     return told;
 }
 
+std::string text_at(const json& object, const char* key, const char* otherwise)
+{
+    return object.is_object() ? object.value(key, std::string(otherwise)) : otherwise;
+}
+
 std::string list_change(const json& was, const json& is)
 {
     const size_t before = was.is_array() ? was.size() : 0, after = is.is_array() ? is.size() : 0;
-    if (after == 0) return "removed all distances";
-    if (after == before + 1) return "measured a distance";
-    if (after > before) return sentence("added ", after - before, " distances");
-    if (after < before) return sentence("removed ", before - after, before - after == 1 ? " distance" : " distances");
-    return "changed the distances";
+    if (after == 0) return "removed all measurements";
+    if (after == before + 1) {
+        const std::string kind = text_at(is.back(), "kind", "distance");
+        return sentence("measured ", kind == "angle" ? "an " : "a ", kind);
+    }
+    if (after > before) return sentence("added ", after - before, " measurements");
+    const size_t gone = before - after;
+    if (gone > 0) return sentence("removed ", gone == 1 ? "a measurement" : sentence(gone, " measurements"));
+    for (size_t i = 0; i < after; ++i) {
+        const std::string old_name = text_at(was[i], "name", ""), name = text_at(is[i], "name", "");
+        if (old_name != name) return sentence("renamed the measurement ", in_quotes(old_name), " to ", in_quotes(name));
+    }
+    return "changed the measurements";
 }
 
 /// Describes the difference of one section.

@@ -171,9 +171,9 @@ inline constexpr auto WORK_ACTIONS = std::tuple{
             const bool is_painted = std::ranges::any_of(model.voxels_by_group.begin() + 1, model.voxels_by_group.end(),
                                                         [](int64_t voxels) { return voxels > 0; });
             if (!task.surface.empty() && !is_painted) return "nothing is painted yet, so there is no surface to write";
-            const bool has_file = std::ranges::any_of(
-                std::array{&task.mask, &task.offset, &task.trace, &task.mesh, &task.metrics, &task.surface},
-                [](const auto* path) { return !path->empty(); });
+            const bool has_file = std::ranges::any_of(std::array{&task.mask, &task.offset, &task.trace, &task.mesh,
+                                                                 &task.metrics, &task.surface, &task.measurements},
+                                                      [](const auto* path) { return !path->empty(); });
             return has_file || task.labels ? "" : "no file is named; expected at least one to be written";
         }),
     row<ImportTask, TaskRunner>({"import", "Import as project", WORK_GROUP,

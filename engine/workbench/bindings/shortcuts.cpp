@@ -144,6 +144,28 @@ Action toggle(const Model& model, double)
     return edited(model.session, [](Session& s) { s.probe.*FLAG = !(s.probe.*FLAG); });
 }
 
+Action next_measure(const Model& model, double)
+{
+    return edited(model.session, [](Session& s) {
+        s.probe.measure = MEASURE_KINDS[(size_t(s.probe.measure) + 1) % std::size(MEASURE_KINDS)].value;
+    });
+}
+
+/// Switches the preview off, or on for the tool in hand: with those that paint by leaving the choice to the window.
+Action toggle_preview(const Model& model, double)
+{
+    return edited(model.session, [](Session& s) {
+        ProbeSettings& probe = s.probe;
+        const bool paints = probe.tool == Tool::paint || probe.tool == Tool::erase;
+        if (probe.previews())
+            probe.preview = false;
+        else if (paints)
+            probe.preview.reset();
+        else
+            probe.preview = true;
+    });
+}
+
 Action next_guidance(const Model& model, double)
 {
     return edited(model.session, [](Session& s) {
@@ -421,8 +443,10 @@ constexpr Shortcut SHORTCUTS[] = {
     both("group_legend", VIEWS_KEYS, "Names of the groups", Mode::tap, toggle_drawn<&InteractionSettings::group_legend>,
          ""),
     both("auto_contrast", VIEWS_KEYS, "Automatic contrast of the slices", Mode::tap, plain<AutoContrast>, "B"),
-    {"copy_measurements", VIEWS_KEYS, "Copy the distances", Mode::tap, plain<CopyMeasurements>, {"Ctrl+C", ""}},
-    both("clear_measurements", VIEWS_KEYS, "Remove the distances", Mode::tap, plain<ClearMeasurements>, ""),
+    both("next_measure", VIEWS_KEYS, "Measure distances, paths or angles in turn", Mode::tap, next_measure, ""),
+    both("end_measure", VIEWS_KEYS, "End the measured path", Mode::tap, plain<EndMeasure>, ""),
+    {"copy_measurements", VIEWS_KEYS, "Copy the measurements", Mode::tap, plain<CopyMeasurements>, {"Ctrl+C", ""}},
+    both("clear_measurements", VIEWS_KEYS, "Remove the measurements", Mode::tap, plain<ClearMeasurements>, ""),
     {"fit_view", VIEWS_KEYS, "Fit", Mode::tap, at_pane<FitView>, {"Home", "Ctrl+Home"}},
     both("reset_view", VIEWS_KEYS, "Reset the view", Mode::tap, plain<ResetView>, "Shift+Home"),
     both("look_at_selection", VIEWS_KEYS, "Look at the selection", Mode::tap, plain<LookAtSelection>, "Alt+Home"),
@@ -455,7 +479,7 @@ constexpr Shortcut SHORTCUTS[] = {
     both("tool_measure", TOOL_KEYS, "Measure with the mouse", Mode::tap, take<Tool::measure>, "Alt+6"),
 
     both("paint", PAINTING_KEYS, "Paint while held", Mode::while_held, begin_and_end<Paint>, "F Stylus1"),
-    both("preview", PAINTING_KEYS, "Preview of the brush", Mode::tap, toggle<&ProbeSettings::preview>, "F5"),
+    both("preview", PAINTING_KEYS, "Preview of the brush", Mode::tap, toggle_preview, "F5"),
     both("eraser", PAINTING_KEYS, "Eraser", Mode::tap, choose<0>, "0"),
     both("group_1", PAINTING_KEYS, "Group 1", Mode::tap, choose<1>, "1"),
     both("group_2", PAINTING_KEYS, "Group 2", Mode::tap, choose<2>, "2"),

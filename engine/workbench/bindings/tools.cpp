@@ -25,7 +25,8 @@ constexpr ToolRow TOOL_ROWS[] = {
      "space to deselect. The right button turns the volume.",
      "select", "turn"},
     {Tool::measure, "Measure", "tool_measure",
-     "Click two points, or drag from one to the other, to measure the distance. The right button turns the volume.",
+     "Click the points of a distance, a path or an angle, as the panel Measurements says; a double click ends a path. "
+     "The right button turns the volume.",
      "set a point", "turn"},
 };
 

@@ -191,7 +191,8 @@ ProbeLook Document::probe_look() const
     look.ball_opacity = session.probe.opacity;
     look.has_silhouette = session.probe.silhouette;
     look.has_arrow = session.probe.arrow;
-    if (painted_at == touch.probe()) look.ball_share = BALL_IN_SHELL;
+    // With its outline, the probe is a ring around a point, through which its target is seen.
+    if (look.has_silhouette || painted_at == touch.probe()) look.ball_share = BALL_IN_SHELL;
     if (previewer.shown()) {
         look.ball_share = BALL_IN_SHELL;
         look.preview = previewer.shown();

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "engine/annotation/trace/local_radius.h"
 #include "engine/annotation/trace/trace_command.h"
@@ -75,7 +76,7 @@ struct Document {
                                         ///< moves to the probe, several parts move along
 
     // State of the open document that is not part of the work
-    std::optional<glm::dvec3> measuring_from;               ///< first end of a measurement that lacks its second end
+    std::vector<glm::dvec3> measuring;                      ///< points of a measurement that is not complete yet
     std::optional<glm::dvec3> picked_pivot;                 ///< volume space
     std::optional<std::pair<uint32_t, uint32_t>> cut_ends;  ///< nodes that the last deletion separated
     /// Position of the probe when the last stroke ended. Until the probe moves, its ball does not hide the new paint.

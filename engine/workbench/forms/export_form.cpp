@@ -68,15 +68,20 @@ std::vector<ExportRow> rows_of(ExportForm& form, const Model& model)
 {
     const std::filesystem::path name = placed(form.base, {}).filename();
     const bool is_traced = !model.trace.nodes().empty();
-    return {{"Mask", &form.mask, MASK_ENDINGS, file_of(name, "mask", form.mask).string(),
-             size_of_mask(model, form.mask.ending), ""},
-            {"Trace", &form.trace, TRACE_ENDINGS, file_of(name, "trace", form.trace).string(),
-             is_traced ? size_of_trace(model, form.trace.ending) : "", is_traced ? "" : "nothing is traced yet"},
-            {"Measures", &form.measures, MEASURES_ENDINGS, file_of(name, "measures", form.measures).string(), "", ""},
-            {"Surfaces", &form.surfaces, SURFACE_ENDINGS,
-             file_of(name, form.surfaces.ending == ".stl" ? "surface-N" : "surface", form.surfaces).string(),
-             is_painted(model) ? size_of_surfaces(model, form.surfaces.ending) : "",
-             is_painted(model) ? "" : "nothing is painted yet"}};
+    std::vector<ExportRow> rows{
+        {"Mask", &form.mask, MASK_ENDINGS, file_of(name, "mask", form.mask).string(),
+         size_of_mask(model, form.mask.ending), ""},
+        {"Trace", &form.trace, TRACE_ENDINGS, file_of(name, "trace", form.trace).string(),
+         is_traced ? size_of_trace(model, form.trace.ending) : "", is_traced ? "" : "nothing is traced yet"},
+        {"Measures", &form.measures, MEASURES_ENDINGS, file_of(name, "measures", form.measures).string(), "", ""},
+        {"Surfaces", &form.surfaces, SURFACE_ENDINGS,
+         file_of(name, form.surfaces.ending == ".stl" ? "surface-N" : "surface", form.surfaces).string(),
+         is_painted(model) ? size_of_surfaces(model, form.surfaces.ending) : "",
+         is_painted(model) ? "" : "nothing is painted yet"}};
+    if (!model.measurements.empty())
+        rows.push_back({"Distances, angles", &form.measurements, MEASURES_ENDINGS,
+                        file_of(name, "distances", form.measurements).string(), "", ""});
+    return rows;
 }
 
 ExportForm suggested_export(const Model& model, const ExportForm& last)
@@ -88,7 +93,8 @@ ExportForm suggested_export(const Model& model, const ExportForm& last)
     form.trace.is_written = is_traced;
     form.surfaces.is_written = false;
     form.measures.is_written = form.mask.is_written || is_traced;
-    if (!form.measures.is_written) form.mask.is_written = true;
+    form.measurements.is_written = !model.measurements.empty();
+    if (!form.measures.is_written && !form.measurements.is_written) form.mask.is_written = true;
     return form;
 }
 
@@ -96,7 +102,7 @@ ExportTask task_of(const ExportForm& form, const std::filesystem::path& folder)
 {
     ExportTask task = form.more;
     const std::filesystem::path base = placed(form.base, folder);
-    task.mask = task.trace = task.metrics = task.surface = std::filesystem::path();
+    task.mask = task.trace = task.metrics = task.surface = task.measurements = std::filesystem::path();
     for (std::filesystem::path* const more : {&task.offset, &task.mesh})
         *more = placed(more->string(), base.parent_path());
     if (base.empty() || !base.has_filename()) return task;
@@ -104,6 +110,7 @@ ExportTask task_of(const ExportForm& form, const std::filesystem::path& folder)
     if (form.trace.is_written) task.trace = file_of(base, "trace", form.trace);
     if (form.measures.is_written) task.metrics = file_of(base, "measures", form.measures);
     if (form.surfaces.is_written) task.surface = file_of(base, "surface", form.surfaces);
+    if (form.measurements.is_written) task.measurements = file_of(base, "distances", form.measurements);
     return task;
 }
 

@@ -17,7 +17,8 @@ struct ExportForm {
     };
     std::string base;  ///< folder and beginning of all names, as typed: "/scans/leaf"
     Part mask{false, ".nrrd"}, trace{false, ".graphml"}, measures{false, ".csv"}, surfaces{false, ".ply"};
-    ExportTask more;  ///< options under More
+    Part measurements{false, ".csv"};  ///< distances, paths and angles; without a row where there are none
+    ExportTask more;                   ///< options under More
 };
 
 /// One row of the dialog.
@@ -40,6 +41,6 @@ ExportTask task_of(const ExportForm& form, const std::filesystem::path& folder);
 /// The number of files that surfaces are written to: one, or one for each group.
 int64_t files_of_surfaces(const ExportForm& form, const Model& model);
 /// Options of the task that the rows cover, so that More leaves them out.
-inline constexpr std::string_view EXPORT_ROWS_COVER[]{"mask", "trace", "metrics", "surface"};
+inline constexpr std::string_view EXPORT_ROWS_COVER[]{"mask", "trace", "metrics", "surface", "measurements"};
 
 }  // namespace shvr::ui

@@ -28,8 +28,8 @@ struct ViewModel {
 struct ReadingModel {
     Reading reading{};
     std::span<const Measurement> measurements{};
-    std::optional<glm::dvec3> measuring_from{};  ///< first end of a measurement whose second end is not set yet
-    std::optional<glm::dvec3> measuring_to{};    ///< candidate for its second end
+    std::span<const glm::dvec3> measuring{};   ///< points of a measurement that is begun and not complete yet
+    std::optional<glm::dvec3> measuring_to{};  ///< candidate for its next point
 };
 
 /// Made by the prober.

@@ -220,7 +220,9 @@ std::string Painter::how_to_reach_this() const
 void Painter::follow_preview()
 {
     Document& document = *document_;
-    const bool is_wanted = document.session.probe.preview && document.session.probe.tool != Tool::trace &&
+    const ProbeSettings& probe = document.session.probe;
+    const bool is_asked_for = probe.preview.has_value(), is_refused = !is_asked_for && unpreviewed_ == probe.brush;
+    const bool is_wanted = probe.previews() && !is_refused && !(document.is_script() && !is_asked_for) &&
                            !document.annotator.stroke_is_running();
     document.previewer.want(is_wanted ? std::optional(document.dab()) : std::nullopt);
     try {
@@ -229,10 +231,15 @@ void Painter::follow_preview()
         const bool is_of_budget = dynamic_cast<const gpu::BudgetError*>(&error) != nullptr;
         if (dynamic_cast<const gpu::DeviceLost*>(&error) != nullptr) throw;
         if (dynamic_cast<const gpu::MemoryError*>(&error) != nullptr && !is_of_budget) throw;  // there may be some soon
-        // The brush is too large for a preview, or a file cannot be read: switch the preview off.
+        // The brush is too large for a preview, or a file cannot be read: switch the preview off; for this brush
+        // only, and without a word, if it is there by default.
+        document.previewer.want(std::nullopt);
+        if (!is_asked_for) {
+            unpreviewed_ = probe.brush;
+            return;
+        }
         document.session.probe.preview = false;
         others_.note_edit();
-        document.previewer.want(std::nullopt);
         say(error.what(), Weight::error);
     }
 }

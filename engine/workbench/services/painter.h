@@ -23,7 +23,11 @@ public:
 
     void advance() override;
     /// Forgets state of the previous document.
-    void begin_document() { journal_failure_.clear(); }
+    void begin_document()
+    {
+        journal_failure_.clear();
+        unpreviewed_.reset();
+    }
     /// Extends a stroke that is in progress to the probe's position.
     void extend_stroke();
     /// Advances until the current stroke is fully painted. Returns why part of it could not be painted; empty: all was.
@@ -58,6 +62,7 @@ private:
     glm::dvec3 stroke_end_voxel_{0.0};  ///< last point of the open stroke
     std::string journal_failure_;       ///< failure last reported
     std::optional<int64_t> previewed_at_stroke_;
+    std::optional<BrushSettings> unpreviewed_;  ///< brush whose preview by default has failed
     Attempt painting_, previewing_;
 };
 

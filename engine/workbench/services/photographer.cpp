@@ -242,10 +242,13 @@ Screenshots::Texts Photographer::texts_of_picture(const glm::uvec2& pixels, bool
     return [this, pixels, shows_probe](const std::filesystem::path& picture) {
         Session session = document_->saved_session();
         session.render.size = pixels;
+        session.probe.preview = document_->previewer.shown() != nullptr;
         const bool has_project = document_->has_session_file() || document_->annotator.work().journal().bytes > 0;
         return shvr::texts_of_picture(std::move(session), document_->camera, picture,
                                       has_project ? document_->session_path : std::filesystem::path(),
-                                      shows_probe ? PictureProbe::plain : PictureProbe::none);
+                                      !shows_probe                                ? PictureProbe::none
+                                      : document_->probe_look().ball_share == 1.0 ? PictureProbe::plain
+                                                                                  : PictureProbe::point);
     };
 }
 

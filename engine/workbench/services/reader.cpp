@@ -9,6 +9,20 @@
 
 namespace shvr::ui {
 
+namespace {
+
+/// Says what to do next, after a point that does not complete the measurement.
+std::string next_step(MeasureKind kind, size_t points)
+{
+    if (kind == MeasureKind::distance) return "One end of the distance; click the other";
+    if (kind == MeasureKind::path)
+        return points == 1 ? "The path begins here; click its next points, the last one twice"
+                           : sentence("Point ", points, " of the path; a double click ends it");
+    return points == 1 ? "One side of the angle; click its vertex" : "The vertex; click the other side of the angle";
+}
+
+}  // namespace
+
 Reader::Reader(Desk& desk, PreferenceKeeper& keeper, Others others)
     : Service(desk), keeper_(keeper), others_(std::move(others))
 {}
@@ -103,59 +117,85 @@ bool Reader::read_at(const glm::dvec3& voxel)
     return true;
 }
 
-// ---- Measuring ------------------------------------------------------------------------------------------------------
-
 void Reader::act(const MeasureAt& action)
 {
     Document& document = *document_;
     const std::optional<glm::dvec3> point = others_.seen_at(others_.pane(action.pane), action.pixel);
     if (!point) decline("Nothing is seen there, so nothing is measured; click something visible");
-    const glm::dvec3 voxel = *point / document.volume().spacing;
-    if (!document.measuring_from) {
-        document.measuring_from = voxel;
-        return say("One end of the distance; click the other");
-    }
+    if (document.session.measurements.size() == MAX_MEASUREMENTS)
+        decline(sentence("There are ", MAX_MEASUREMENTS,
+                         " measurements, and no more are kept; copy them and remove some first"));
+    document.measuring.push_back(*point / document.volume().spacing);
+    const MeasureKind kind = document.session.probe.measure;
+    const size_t points = document.measuring.size();
+    if (points < last_point_of(kind).value_or(MAX_MEASURED_POINTS)) return say(next_step(kind, points));
+    complete_measurement();
+}
+
+void Reader::act(const EndMeasure&)
+{
+    complete_measurement();
+}
+
+void Reader::complete_measurement()
+{
+    Document& document = *document_;
     Session after = document.session;
-    if (after.measurements.size() == MAX_MEASUREMENTS)
-        fail(MAX_MEASUREMENTS, " distances are measured, and no more are kept; expected them to be copied and removed");
-    after.measurements.push_back({*document.measuring_from, voxel});
-    document.measuring_from.reset();
+    const MeasureKind kind = after.probe.measure;
+    after.measurements.push_back({std::exchange(document.measuring, {}), kind, unused_name(after.measurements, kind)});
     others_.take_session(std::move(after));
     const std::vector<Measurement>& all = document.session.measurements;
-    const double length = length_of(all.back(), document.volume().spacing);
     const std::string copy = keeper_.keys_of("copy_measurements"), clear = keeper_.keys_of("clear_measurements");
-    say(sentence("Distance ", all.size(), ": ", length_in_words(length, document.volume().unit),
+    say(sentence(all.back().name, ": ", value_in_words(all.back(), document.volume()),
                  copy.empty() ? "" : "; " + copy + " copies", clear.empty() ? "" : ", " + clear + " removes"));
+}
+
+void Reader::act(const RenameMeasurement& action)
+{
+    Session after = document_->session;
+    after.measurements.at(action.number - 1).name = action.to;
+    others_.take_session(std::move(after));
+}
+
+void Reader::act(const RemoveMeasurement& action)
+{
+    Session after = document_->session;
+    const auto which = after.measurements.begin() + ptrdiff_t(action.number - 1);
+    const std::string name = name_of(*which, action.number);
+    after.measurements.erase(which);
+    others_.take_session(std::move(after));
+    say(sentence(name, " is removed; undo brings it back"));
 }
 
 void Reader::act(const ClearMeasurements&)
 {
     Session after = document_->session;
-    const bool is_one_begun = std::exchange(document_->measuring_from, {}).has_value();
+    const bool is_one_begun = !std::exchange(document_->measuring, {}).empty();
     if (after.measurements.empty()) {
-        if (is_one_begun) say("The begun distance is dropped");
+        if (is_one_begun) say("The begun measurement is dropped");
         return;
     }
     after.measurements.clear();
     others_.take_session(std::move(after));
-    say("Distances are removed; undo brings them back");
+    say("Measurements are removed; undo brings them back");
 }
 
 void Reader::act(const CopyMeasurements&)
 {
     const std::vector<Measurement>& all = document_->session.measurements;
-    clipboard_ = table_of(all, document_->volume());
-    say(sentence(all.size(), all.size() == 1 ? " distance is" : " distances are", " on the clipboard, as a table"));
+    clipboard_ = measurements_table(all, space_of(document_->volume()), Positions::physical, '\t');
+    say(sentence(all.size(), all.size() == 1 ? " measurement is" : " measurements are",
+                 " on the clipboard, as a table"));
 }
 
 ReadingModel Reader::model() const
 {
     if (!document_) return {};
-    const std::optional<glm::dvec3>& from = document_->measuring_from;
+    const std::vector<glm::dvec3>& measuring = document_->measuring;
     return {.reading = reading_,
             .measurements = document_->session.measurements,
-            .measuring_from = from,
-            .measuring_to = from ? std::optional(voxel_to_read()) : std::nullopt};
+            .measuring = measuring,
+            .measuring_to = measuring.empty() ? std::nullopt : std::optional(voxel_to_read())};
 }
 
 }  // namespace shvr::ui

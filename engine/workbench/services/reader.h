@@ -18,6 +18,9 @@ public:
     };
     Reader(Desk& desk, PreferenceKeeper& keeper, Others others);
     void act(const MeasureAt& action);
+    void act(const EndMeasure& action);
+    void act(const RenameMeasurement& action);
+    void act(const RemoveMeasurement& action);
     void act(const ClearMeasurements& action);
     void act(const CopyMeasurements& action);
 
@@ -30,6 +33,7 @@ public:
 
 private:
     void follow_reading();
+    void complete_measurement();
     bool read_at(const glm::dvec3& voxel);
     bool probe_is_measured() const;
     glm::dvec3 voxel_to_read() const;

@@ -18,7 +18,7 @@ namespace {
 /// Returns whether both sessions give the same picture of the volume. Other settings may differ.
 bool look_the_same(Session before, const Session& after)
 {
-    before.probe = after.probe;  // drawn separately over the picture, like distances
+    before.probe = after.probe;  // drawn separately over the picture, like measurements
     before.measurements = after.measurements;
     if (!shows_occlusion(before.light) && !shows_occlusion(after.light)) before.light.occlusion = after.light.occlusion;
     return before == after;
@@ -141,8 +141,9 @@ void SettingsEditor::settings_changed(const Session& before)
     if (before.probe.tool != after.probe.tool) {
         if (document.annotator.stroke_is_open()) document.annotator.end_stroke();
         if (document.drags_node) others_.stop_drag();
-        document.measuring_from.reset();
     }
+    if (before.probe.tool != after.probe.tool || before.probe.measure != after.probe.measure)
+        document.measuring.clear();
 }
 
 /// Requests that view, probe etc. are written to the journal: once they stop changing, or every few seconds until then.

@@ -129,10 +129,12 @@ void TaskRunner::act(const ExportTask& task)
                               .project = document.session.volume_path,
                               .volume_path = document.session.volume_path,
                               .trace_path = document.session.trace_path,
-                              .mask_path = document.annotator.work().mask_of_header()};
+                              .mask_path = document.annotator.work().mask_of_header(),
+                              .measurements = document.session.measurements};
     auto snapshot = std::make_shared<AnnotationSnapshot>(view);
     std::vector<std::string> names;
-    for (const auto& path : {wanted.mask, wanted.offset, wanted.trace, wanted.mesh, wanted.metrics, wanted.surface})
+    for (const auto& path :
+         {wanted.mask, wanted.offset, wanted.trace, wanted.mesh, wanted.metrics, wanted.surface, wanted.measurements})
         if (!path.empty()) names.push_back(short_name(path));
     if (wanted.labels) names.emplace_back("labels");
     if (wanted.budget_host_mib == 0)

@@ -8,6 +8,7 @@
 #include "engine/workbench/lists/group_list.h"
 #include "engine/workbench/sight/cut_handles.h"
 #include "engine/workbench/sight/hits.h"
+#include "engine/workbench/sight/label_place.h"
 #include "engine/workbench/sight/plane_handles.h"
 #include "engine/workbench/sight/words.h"
 
@@ -233,22 +234,61 @@ private:
         const auto begin = pixel_of(from), end = pixel_of(to);
         if (!begin || !end || glm::distance(*begin, *end) < 8.0 * units_) return;
         dashed(*begin, *end, LINK);
-        label(0.5 * (*begin + *end), {0.5, 1.2}, length_in_words(glm::distance(from, to), model_.volume.unit), LINK);
+        label_line(*begin, *end, 0.5 * (*begin + *end), length_in_words(glm::distance(from, to), model_.volume.unit),
+                   LINK);
     }
 
-    void measurement(const glm::dvec3& from_voxel, const glm::dvec3& to_voxel, bool is_open)
+    /// Labels a line of a drawing around `centre`.
+    void label_line(const glm::dvec2& from, const glm::dvec2& to, const glm::dvec2& centre, std::string text,
+                    const glm::dvec3& color)
     {
-        const Measurement ends{from_voxel, to_voxel};
-        const glm::dvec3 begin = from_voxel * model_.volume.spacing, end_point = to_voxel * model_.volume.spacing;
-        const auto from = pixel_of(begin), to = pixel_of(end_point);
-        if (!from || !to || (is_slice() && !is_near_plane(begin, end_point))) return;
-        if (is_open)
-            dashed(*from, *to, MEASURED);
-        else
-            line(*from, *to, MEASURED, 2.0);
-        for (const glm::dvec2& end : {*from, *to}) ring(end, 3.5 * units_, MEASURED);
-        label(0.5 * (*from + *to), {0.5, 1.2},
-              length_in_words(length_of(ends, model_.volume.spacing), model_.volume.unit), MEASURED);
+        const LabelPlace place = place_next_to(from, to, centre, units_);
+        label(place.at, place.anchor, std::move(text), color);
+    }
+
+    /// Draws a measurement's sides and points, with `text` next to a side. `is_open`: its last side is not set yet.
+    void measurement(const Measurement& measured, const std::string& text, bool is_open)
+    {
+        const std::vector<glm::dvec3>& points = measured.points;
+        std::optional<std::pair<glm::dvec2, glm::dvec2>> labelled;
+        glm::dvec2 sum(0.0);
+        int sides = 0;
+        for (size_t i = 1; i < points.size(); ++i) {
+            const glm::dvec3 begin = points[i - 1] * model_.volume.spacing, end = points[i] * model_.volume.spacing;
+            const auto from = pixel_of(begin), to = pixel_of(end);
+            if (!from || !to || (is_slice() && !is_near_plane(begin, end))) continue;
+            if (is_open && i + 1 == points.size())
+                dashed(*from, *to, MEASURED);
+            else
+                line(*from, *to, MEASURED, 2.0);
+            for (const glm::dvec2& at : {*from, *to}) ring(at, 3.5 * units_, MEASURED);
+            if (!labelled || i == points.size() / 2) labelled = {*from, *to};
+            sum += *from + *to;
+            ++sides;
+        }
+        if (!labelled) return;
+        if (measured.kind == MeasureKind::angle && points.size() == 3) arc(measured);
+        label_line(labelled->first, labelled->second, sum / (2.0 * sides), text, MEASURED);
+    }
+    /// Draws an angle's arc between its sides, unless it is not seen.
+    void arc(const Measurement& measured)
+    {
+        constexpr int PARTS = 24;
+        constexpr double SHARE = 0.3;  ///< radius of the arc, of the shorter side
+        const glm::dvec3 spacing = model_.volume.spacing, vertex = measured.points[1] * spacing;
+        const glm::dvec3 a = measured.points[0] * spacing - vertex, b = measured.points[2] * spacing - vertex;
+        const auto angle = angle_of(measured, spacing);
+        if (!angle || *angle < 0.1 || *angle > 179.9) return;
+        if (is_slice() && !(is_near_plane(vertex, vertex + a) && is_near_plane(vertex, vertex + b))) return;
+        const glm::dvec3 along = glm::normalize(a), across = glm::normalize(b - glm::dot(b, along) * along);
+        const double radius = SHARE * std::min(glm::length(a), glm::length(b));
+        std::optional<glm::dvec2> before;
+        for (int i = 0; i <= PARTS; ++i) {
+            const double turned = glm::radians(*angle) * i / PARTS;
+            const auto at = pixel_of(vertex + radius * (std::cos(turned) * along + std::sin(turned) * across));
+            if (before && at) line(*before, *at, MEASURED);
+            before = at;
+        }
     }
     /// Returns whether the line of a measurement crosses the plane of the slice or comes within a voxel of it.
     bool is_near_plane(const glm::dvec3& a, const glm::dvec3& b) const
@@ -259,10 +299,19 @@ private:
     void measurements()
     {
         if (pane_.shot.right_eye) return;
-        for (const Measurement& each : model_.measurements) measurement(each.from, each.to, false);
-        if (!model_.measuring_from || !is_for_screen_) return;
+        for (size_t i = 0; i < model_.measurements.size(); ++i) {
+            const Measurement& each = model_.measurements[i];
+            const std::string name = shortened_name(name_of(each, i + 1));
+            measurement(each, sentence(name, ": ", value_in_words(each, model_.volume)), false);
+        }
+        if (model_.measuring.empty() || !is_for_screen_) return;
+        Measurement begun{{model_.measuring.begin(), model_.measuring.end()}, model_.session.probe.measure, ""};
         const bool leads = model_.tool() == Tool::measure && model_.measuring_to;
-        measurement(*model_.measuring_from, leads ? *model_.measuring_to : *model_.measuring_from, true);
+        begun.points.push_back(leads ? *model_.measuring_to : begun.points.back());
+        const bool is_angle = begun.kind == MeasureKind::angle && begun.points.size() == 3;
+        const double length = length_of(begun, model_.volume.spacing);
+        measurement(
+            begun, is_angle ? value_in_words(begun, model_.volume) : length_in_words(length, model_.volume.unit), true);
     }
 
     /// Draws a small cross at the pivot of rotation, if the user has picked one.

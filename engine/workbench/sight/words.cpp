@@ -46,9 +46,15 @@ std::string length_in_words(double length, const std::string& unit)
     return text + " " + (unit == "voxel" && text != "1" ? "voxels" : spelled(unit));
 }
 
-double length_of(const Measurement& measurement, const glm::dvec3& spacing)
+std::string value_in_words(const Measurement& measurement, const VolumeInfo& volume)
 {
-    return glm::length((measurement.to - measurement.from) * spacing);
+    if (measurement.kind != MeasureKind::angle)
+        return length_in_words(length_of(measurement, volume.spacing), volume.unit);
+    const std::optional<double> angle = angle_of(measurement, volume.spacing);
+    if (!angle) return "no angle";
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1f\u00b0", *angle);
+    return text;
 }
 
 std::string place_in_words(const glm::dvec3& voxel, const VolumeInfo& volume)
@@ -84,19 +90,6 @@ std::string slice_in_words(int axis, const glm::dvec3& voxel, const VolumeInfo& 
     const double at = (slice + 0.5) * volume.spacing[axis];
     std::string text = sentence("xyz"[axis], " ", int64_t(slice), " (0 to ", int64_t(last), ")");
     if (volume.unit != "voxel") text += ", " + length_in_words(at, volume.unit);
-    return text;
-}
-
-std::string table_of(std::span<const Measurement> measurements, const VolumeInfo& volume)
-{
-    std::string text = "number\tlength\tunit\tfrom_x\tfrom_y\tfrom_z\tto_x\tto_y\tto_z\n";
-    int number = 0;
-    for (const Measurement& each : measurements) {
-        text += sentence(++number, '\t', digits_of(length_of(each, volume.spacing)), '\t', volume.unit);
-        for (const glm::dvec3& end : {each.from, each.to})
-            for (int axis = 0; axis < 3; ++axis) text += '\t' + digits_of(end[axis]);
-        text += '\n';
-    }
     return text;
 }
 

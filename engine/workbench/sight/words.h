@@ -1,7 +1,6 @@
 #pragma once
 // Formats positions, lengths and readings for display. Pure; any thread.
 
-#include <span>
 #include <string>
 
 #include "engine/look/camera.h"
@@ -13,8 +12,8 @@ namespace shvr::ui {
 
 /// Returns a text such as "12.35 mm", with four digits. Displays micrometres with the Greek letter.
 std::string length_in_words(double length, const std::string& unit);
-/// Returns the physical length of a measurement.
-double length_of(const Measurement& measurement, const glm::dvec3& spacing);
+/// Returns "12.35 mm" or, for an angle, "43.2°".
+std::string value_in_words(const Measurement& measurement, const VolumeInfo& volume);
 /// Returns "voxel 120, 80, 33 (1.2, 0.8, 0.33 mm)", counting voxels from 0. Without a unit, states the voxel only.
 std::string place_in_words(const glm::dvec3& voxel, const VolumeInfo& volume);
 /// Returns a text such as "value 12345 + 30", "value ..." or "outside". Integers get all digits, other values four.
@@ -23,8 +22,6 @@ std::string value_in_words(const Reading& reading);
 std::string in_words(const Reading& reading, const VolumeInfo& volume, const std::string& group_name);
 /// Returns "z 214 of 512, 1.284 mm": slices count from 1, and the length is the position of the slice's middle.
 std::string slice_in_words(int axis, const glm::dvec3& voxel, const VolumeInfo& volume);
-/// Returns a table with a heading and tab-separated columns: number, length, unit, and both ends in voxels.
-std::string table_of(std::span<const Measurement> measurements, const VolumeInfo& volume);
 
 /// Returns the depth of a point along the line of sight, from where the drawn volume begins; at least 0.
 double depth_below_surface(const Camera& camera, const CutBox& cut, const VolumeInfo& volume, const glm::dvec3& point);

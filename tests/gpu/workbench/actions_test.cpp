@@ -44,6 +44,8 @@ constexpr const char *NODE = R"({"op":"node","at":[10,12,14],"radius":2,"group":
                      *TO_NODE = R"({"op":"step_node"})", *DESELECT = R"({"op":"deselect"})",
                      *SELECT_1 = R"({"op":"select","node":1})", *SEGMENT = R"({"op":"select_segment"})",
                      *MEASURE = R"({"op":"measure_at","pixel":[48,40]})",
+                     *MEASURE_ON = R"({"op":"measure_at","pixel":[60,40]})",
+                     *MEASURE_PATHS = R"({"op":"set","values":{"probe":{"measure":"path"}}})",
                      *DARK = R"({"op":"set","values":{"view":{"slices":{"white":900}}}})",
                      *STROKE_5 =
                          R"({"op":"paint","brush":"fill","group":5,"threshold":90,"radius":4,"path":[[9,18,16]]})";
@@ -158,6 +160,9 @@ const Row ROWS[] = {
     {R"({"op":"mend_cut"})", "saved, trace, undo", {NODE, NEXT_NODE, LAST_NODE, SELECT_1, R"({"op":"delete"})"}},
     {R"({"op":"measure_at","pixel":[48,40]})", "measured"},
     {R"({"op":"measure_at","pixel":[60,40]})", "measured, saved, undo", {MEASURE}},
+    {R"({"op":"end_measure"})", "measured, saved, undo", {MEASURE_PATHS, MEASURE, MEASURE_ON}},
+    {R"({"op":"rename_measurement","number":1,"to":"stem"})", "saved, undo", {MEASURE, MEASURE}},
+    {R"({"op":"remove_measurement","number":1})", "measured, saved, undo", {MEASURE, MEASURE}},
     {R"({"op":"clear_measurements"})", "measured, saved, undo", {MEASURE, MEASURE}},
     {R"({"op":"copy_measurements"})", "", {MEASURE, MEASURE}},
     {R"({"op":"undo"})", "redo, saved, undo, voxels", {STROKE}},

@@ -189,7 +189,7 @@ TEST_CASE_FIXTURE(OnDevice, "a corrected spacing is saved, nodes stay at their v
         const auto kept = std::get<Camera>(desk.bench.model().session.cameras.at("mine"));
         CHECK(glm::distance(kept.eye, eye * glm::dvec3(0.5, 0.5, 2.0)) < 1e-9);
         REQUIRE(desk.bench.model().measurements.size() == 1);
-        CHECK(desk.bench.model().measurements[0] == Measurement{{1, 2, 3}, {5, 2, 3}});
+        CHECK(desk.bench.model().measurements[0] == Measurement{{{1, 2, 3}, {5, 2, 3}}});
     }
 }
 
@@ -279,8 +279,10 @@ TEST_CASE_FIXTURE(OnDevice, "a picture of the window holds its session: it is re
               Work::Opening{.only_look = true});
     other.scene().show(work.document());
     const Camera of_picture = camera_named(opened.session, opened.session.camera_name, opened.source->info());
-    const RenderOptions as_shown{.probe = shown_probe(opened.session, opened.source->info(), opened.statistics),
-                                 .outlines_probe = outlines_probe(picture)};
+    CHECK(probe_of_picture(picture) == PictureProbe::point);  // the window draws a ring around it
+    const RenderOptions as_shown{
+        .probe =
+            in_picture(shown_probe(opened.session, opened.source->info(), opened.statistics), PictureProbe::point)};
     const Image8 again = to_image8(other.render(opened.session, of_picture, as_shown).image);
     CHECK(again.width == shown.width);
     int differing = 0, most = 0;

@@ -336,21 +336,52 @@ TEST_CASE_FIXTURE(OnDevice, "distances are measured on what is seen, in physical
 {
     Plates on(renderer());
     on.perform(MeasureAt{0, {60.0, 48.0}});
-    CHECK(on.bench.model().measuring_from.has_value());
+    CHECK(on.bench.model().measuring.size() == 1);
     on.perform(MeasureAt{0, {80.0, 48.0}});
     REQUIRE(on.bench.model().measurements.size() == 1);
     const Measurement measured = on.bench.model().measurements[0];
-    CHECK(std::abs(measured.to.x - measured.from.x - 10.0) < 0.01);
+    CHECK(std::abs(measured.points[1].x - measured.points[0].x - 10.0) < 0.01);
     CHECK(on.bench.messages().last().find("Distance 1: 20") == 0);  // voxels of 2
     on.perform(CopyMeasurements{});
-    CHECK(on.bench.take_clipboard().starts_with("number\tlength"));
+    CHECK(on.bench.take_clipboard().starts_with("number\tname\tkind\tlength_"));
     CHECK(on.bench.take_clipboard().empty());
     CHECK(!on.bench.model().is_painting);
     on.perform(ClearMeasurements{});
     CHECK(on.bench.model().measurements.empty());
     on.perform(MeasureAt{0, {60.0, 48.0}});
     on.perform(Set{R"({"probe":{"tool":"paint"}})"});
-    CHECK(!on.bench.model().measuring_from);
+    CHECK(on.bench.model().measuring.empty());
+}
+
+TEST_CASE_FIXTURE(OnDevice, "a path is ended, an angle ends by itself, and both are renamed and removed as steps")
+{
+    Plates on(renderer());
+    on.perform(Set{R"({"probe":{"measure":"path"}})"});
+    on.perform(MeasureAt{0, {60.0, 48.0}});
+    CHECK_THROWS(on.perform(EndMeasure{}));  // a point has no length
+    on.perform(MeasureAt{0, {80.0, 48.0}});
+    on.perform(MeasureAt{0, {80.0, 40.0}});
+    on.perform(EndMeasure{});
+    REQUIRE(on.bench.model().measurements.size() == 1);
+    CHECK(on.bench.messages().last().find("Path 1: 28") == 0);  // 20 and 8
+    on.perform(Set{R"({"probe":{"measure":"angle"}})"});
+    for (const glm::dvec2 pixel : {glm::dvec2(80.0, 48.0), {60.0, 48.0}, {60.0, 40.0}}) on.perform(MeasureAt{0, pixel});
+    REQUIRE(on.bench.model().measurements.size() == 2);
+    CHECK(on.bench.messages().last().find("Angle 1: 90.0") == 0);
+    CHECK(on.bench.model().measuring.empty());
+    on.perform(EndStep{});
+    on.perform(RenameMeasurement{2, "petiole"});
+    on.perform(EndStep{});
+    CHECK(on.bench.model().measurements[1].name == "petiole");
+    on.perform(RemoveMeasurement{1});
+    on.perform(EndStep{});
+    REQUIRE(on.bench.model().measurements.size() == 1);
+    CHECK(on.bench.model().measurements[0].name == "petiole");
+    CHECK_THROWS(on.perform(RemoveMeasurement{2}));
+    on.perform(UndoOp{});
+    CHECK(on.bench.messages().last() == "Undone: removed a measurement");
+    on.perform(UndoOp{});
+    CHECK(on.bench.model().measurements[1].name == "Angle 1");
 }
 
 TEST_CASE_FIXTURE(OnDevice,
@@ -371,7 +402,7 @@ TEST_CASE_FIXTURE(OnDevice,
     on.perform(EndStep{});
     CHECK(on.bench.model().measurements.empty());
     on.perform(UndoOp{});
-    CHECK(on.bench.messages().last() == "Undone: removed all distances");
+    CHECK(on.bench.messages().last() == "Undone: removed all measurements");
     CHECK(on.bench.model().session.measurements == two);
     on.perform(UndoOp{});
     CHECK(on.bench.model().measurements.size() == 1);

@@ -414,6 +414,9 @@ TEST_CASE("values of the wrong type or range are refused with what was found and
             Case{R"("probe": {"radius_voxels": 127.5})", "probe.radius_voxels is 127.5; expected"},
             Case{R"("probe": {"brush": "pen"})", "probe.brush is"},
             Case{R"("probe": {"shown": 1})", "probe.shown is 1; expected true or false"},
+            Case{R"("measurements": [{}])", "measurements.0.points is missing; expected 2 points for a distance"},
+            Case{R"("measurements": [{"kind": "angle", "points": [[0, 0, 0], [1, 0, 0]]}])", "and 3 for an angle"},
+            Case{R"("measurements": [{"from": [0, 0, 0]}])", "measurements.0.points is missing"},
             Case{R"("surfaces": {})", "surfaces is {}; expected an array"},
             Case{R"("surfaces": [3])", "surfaces.0 is 3; expected an object"},
             Case{R"("surfaces": [{"radius": 1}])", "surfaces.0.from is missing; expected three numbers, [x, y, z]"},
@@ -752,4 +755,22 @@ TEST_CASE("a session with an option that was removed opens as without it, and sa
     CHECK(open_session(now, {"render.adaptive_tolerance=0.05"}).removed == std::vector{"--set" + said});
     CHECK(open_session(now, {R"(render={"adaptive_tolerance": 2})"}).removed == std::vector{"--set" + said});
     CHECK(open_unmeasured_session(old).removed == opened.removed);
+}
+
+TEST_CASE("measurements are read as written, and distances of earlier versions become such")
+{
+    const auto session_of = [](const std::string& measurements) {
+        return parse_session(
+            R"({"shvr_session": 1, "volume": {"procedural": "sphere"}, "measurements": )" + measurements + "}", "/",
+            "s.json");
+    };
+    const Session old = session_of(R"([{"from": [1, 2, 3.5], "to": [4, 5, 6]}])");
+    REQUIRE(old.measurements.size() == 1);
+    CHECK(old.measurements[0] == Measurement{{{1, 2, 3.5}, {4, 5, 6}}});
+    const Session now =
+        session_of(R"([{"name": "a \"b\"", "kind": "angle", "points": [[1, 2, 3.25], [4, 5, 6], [7, 8, 1e-7]]}])");
+    const Session again = parse_session(to_text(now, "/"), "/", "written");
+    CHECK(again.measurements == now.measurements);
+    CHECK(again.measurements[0].name == "a \"b\"");
+    CHECK(to_text(old, "/").find("\"from\"") == std::string::npos);
 }

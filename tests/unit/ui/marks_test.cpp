@@ -113,16 +113,42 @@ TEST_CASE("Where the trace has drawn the tools a ring says so, and the link lead
     CHECK(Panes::says(panes.over(panes.view), "30 mm"));
 }
 
-TEST_CASE("Distances are drawn where they are, in a slice only near its plane")
+TEST_CASE("Measurements are drawn where they are with their names and values, in a slice only near its plane")
 {
     Panes panes;
-    const Measurement far{{20.0, 20.0, 80.0}, {30.0, 20.0, 80.0}}, near{{20.0, 20.0, 50.5}, {40.0, 20.0, 50.5}};
-    const Measurement both[] = {far, near};
-    panes.world.model.measurements = both;
-    CHECK(Panes::says(panes.over(panes.view), "20 mm"));
+    const Measurement far{{{20.0, 20.0, 80.0}, {30.0, 20.0, 80.0}}},
+        near{{{20.0, 20.0, 50.5}, {40.0, 20.0, 50.5}}, MeasureKind::distance, "stem"},
+        path{{{20.0, 20.0, 80.0}, {30.0, 20.0, 80.0}, {30.0, 30.0, 80.0}, {40.0, 30.0, 50.5}}, MeasureKind::path, ""};
+    const Measurement all[] = {far, near, path};
+    panes.world.model.measurements = all;
+    CHECK(Panes::says(panes.over(panes.view), "Distance 1: 20 mm"));
+    CHECK(Panes::says(panes.over(panes.view), "stem: 40 mm"));
+    CHECK(!Panes::says(panes.over(panes.slice), "Distance 1: 20 mm"));
+    CHECK(Panes::says(panes.over(panes.slice), "stem: 40 mm"));
+    const auto is_path = [](const Label& label) { return label.text.starts_with("Path 3: "); };
+    CHECK(std::ranges::count_if(panes.over(panes.view).labels, is_path) == 1);
+    CHECK(std::ranges::count_if(panes.over(panes.slice).labels, is_path) == 1);  // its last side comes there
+}
+
+TEST_CASE("An angle is drawn with an arc between its sides, and a begun measurement leads to the pointer")
+{
+    Panes panes;
+    const Measurement angle[]{{{{40.0, 20.0, 50.5}, {20.0, 20.0, 50.5}, {20.0, 40.0, 50.5}}, MeasureKind::angle, ""}};
+    const size_t before = panes.over(panes.view).strokes.size();
+    panes.world.model.measurements = angle;
+    CHECK(Panes::says(panes.over(panes.view), "Angle 1: 90.0\u00b0"));
+    CHECK(Panes::says(panes.over(panes.slice), "Angle 1: 90.0\u00b0"));
+    // Two sides, three points (the vertex twice) and the arc, each line with its halo.
+    CHECK(panes.over(panes.view).strokes.size() == before + 2 * (2 + 4 * 48 + 24));
+    panes.world.model.measurements = {};
+    const glm::dvec3 begun[]{{20.0, 20.0, 50.5}, {30.0, 20.0, 50.5}};
+    panes.world.model.measuring = begun;
+    panes.world.model.measuring_to = glm::dvec3(30.0, 30.0, 50.5);
+    panes.world.session.probe.tool = Tool::measure;
+    panes.world.session.probe.measure = MeasureKind::path;
     CHECK(Panes::says(panes.over(panes.view), "40 mm"));
-    CHECK(!Panes::says(panes.over(panes.slice), "20 mm"));
-    CHECK(Panes::says(panes.over(panes.slice), "40 mm"));
+    panes.world.session.probe.measure = MeasureKind::angle;
+    CHECK(Panes::says(panes.over(panes.view), "90.0\u00b0"));
 }
 
 TEST_CASE("Scale bar, axes and the probe's depth are drawn where they are wanted")

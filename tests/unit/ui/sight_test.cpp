@@ -85,15 +85,13 @@ TEST_CASE("A scale bar is 1, 2 or 5 of a power of ten, in the unit that needs th
     CHECK(scale_bar(0.0, 140.0, "um").pixels == 0.0);
 }
 
-TEST_CASE("A measurement is a physical length, and follows a spacing that is corrected")
+TEST_CASE("measurements are shown with the volume's unit, and angles in degrees")
 {
-    const Measurement measured{{10.0, 10.0, 10.0}, {13.0, 14.0, 10.0}};
-    CHECK(length_of(measured, glm::dvec3(1.0)) == doctest::Approx(5.0));
-    CHECK(length_of(measured, {2.0, 2.0, 9.0}) == doctest::Approx(10.0));
-    const std::string table = table_of(std::span(&measured, 1), scan({2.0, 2.0, 9.0}, "um"));
-    CHECK(table ==
-          "number\tlength\tunit\tfrom_x\tfrom_y\tfrom_z\tto_x\tto_y\tto_z\n"
-          "1\t10\tum\t10\t10\t10\t13\t14\t10\n");
+    const VolumeInfo volume = scan({2.0, 2.0, 9.0}, "um");
+    CHECK(value_in_words({{{10, 10, 10}, {13, 14, 10}}}, volume) == "10 \u00b5m");
+    CHECK(value_in_words({{{1, 0, 0}, {0, 0, 0}, {0, 1, 0}}, MeasureKind::path}, volume) == "4 \u00b5m");
+    CHECK(value_in_words({{{1, 0, 0}, {0, 0, 0}, {0, 1, 0}}, MeasureKind::angle}, volume) == "90.0\u00b0");
+    CHECK(value_in_words({{{1, 0, 0}, {1, 0, 0}, {0, 1, 0}}, MeasureKind::angle}, volume) == "no angle");
 }
 
 TEST_CASE("The probe's depth is counted from where what is drawn begins")

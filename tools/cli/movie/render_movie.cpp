@@ -117,8 +117,9 @@ RenderOptions Drawing::options_of(const Movie::Frame& frame, int index)
         work_.stop_if_asked();
         work_.show((index + fraction) / movie_.frames(), sentence("frame ", index + 1, " of ", movie_.frames()), -1.0);
     };
-    return {.probe = shown_probe(frame.session, renderer, *opened_.annotator),
-            .outlines_probe = outlines_probe(request_.input),
+    const PictureProbe kept_probe = probe_of_picture(request_.input);
+    return {.probe = in_picture(shown_probe(frame.session, renderer, *opened_.annotator), kept_probe),
+            .outlines_probe = kept_probe == PictureProbe::as_rendered,
             .progress = progress};
 }
 
@@ -143,7 +144,7 @@ void Drawing::draw_parts(Job& job, bool (Job::*is_done)() const, int index)
 void Drawing::draw_files()
 {
     const FrameFolder folder(plan_.path);
-    const PictureProbe kept_probe = outlines_probe(request_.input) ? PictureProbe::as_rendered : PictureProbe::plain;
+    const PictureProbe kept_probe = probe_of_picture(request_.input);
     for (int index = 0; index < movie_.frames(); ++index) {
         const Movie::Frame frame = movie_.frame(index);
         const std::filesystem::path path = plan_.path / frame_file(index, movie_.frames());

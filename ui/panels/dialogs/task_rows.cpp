@@ -138,7 +138,8 @@ std::string about(const ExportForm& form, const Model& model, const KnownScan&)
 {
     const ExportTask task = task_of(form, base_of(model).parent_path());
     int64_t files = task.labels ? 1 : 0;
-    for (const auto& path : {task.mask, task.offset, task.trace, task.mesh, task.metrics}) files += !path.empty();
+    for (const auto& path : {task.mask, task.offset, task.trace, task.mesh, task.metrics, task.measurements})
+        files += !path.empty();
     if (!task.surface.empty()) files += files_of_surfaces(form, model);
     const std::filesystem::path folder = placed(form.base, base_of(model).parent_path()).parent_path();
     return sentence("Writes ", files, files == 1 ? " file" : " files", " to ", folder.string(), ".");

@@ -52,9 +52,10 @@ TEST_CASE_FIXTURE(ReaderAlone, "reader: two visible points are a distance, which
     seen = glm::dvec3(4.0, 5.0, 6.0);
     reader.act(at);
     CHECK(document().session.measurements.empty());
-    CHECK(reader.model().measuring_from == *seen);
+    REQUIRE(reader.model().measuring.size() == 1);
+    CHECK(reader.model().measuring[0] == *seen);
     reader.act(ClearMeasurements{});
-    CHECK_FALSE(reader.model().measuring_from);
+    CHECK(reader.model().measuring.empty());
     reader.act(at);
     seen = glm::dvec3(4.0, 5.0, 16.0);
     reader.act(at);

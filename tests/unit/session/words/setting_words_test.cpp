@@ -59,7 +59,7 @@ TEST_CASE("changes of a group are told with its name")
     CHECK(words_of(R"({"groups":{"3":{"opacity":0.25}}})", stem) == "set the opacity of group 3 (stem) to 0.25");
 }
 
-TEST_CASE("moved planes and measured distances are told, not the numbers of their corners and ends")
+TEST_CASE("moved planes and measurements are told, not the numbers of their corners and points")
 {
     const char* const cut = R"({"cut":{"lower":[20,0,0],"upper":[60,1048576,1048576]}})";
     CHECK(words_of(R"({"cut":{"upper":[60.4,1048576,1048576]}})") == "moved the far x cutting plane to voxel 60");
@@ -74,7 +74,13 @@ TEST_CASE("moved planes and measured distances are told, not the numbers of thei
     CHECK(words_of(R"({"cut":null})", oblique) == "removed the oblique cutting plane");
     const char* const one = R"({"measurements":[{"from":[0,0,0],"to":[1,2,3]}]})";
     CHECK(words_of(one) == "measured a distance");
-    CHECK(words_of(R"({"measurements":null})", one) == "removed all distances");
+    CHECK(words_of(R"({"measurements":null})", one) == "removed all measurements");
+    const char* const named = R"({"measurements":[{"name":"stem","points":[[0,0,0],[1,2,3]]}]})";
+    CHECK(words_of(R"({"measurements":[{"name":"petiole","points":[[0,0,0],[1,2,3]]}]})", named) ==
+          "renamed the measurement 'stem' to 'petiole'");
+    CHECK(words_of(R"({"measurements":[{"name":"stem","points":[[0,0,0],[1,2,3]]},
+                       {"kind":"angle","points":[[0,0,0],[1,2,3],[4,5,6]]}]})",
+                   named) == "measured an angle");
 }
 
 TEST_CASE("a changed curve of ambient occlusion is told as one, not as the numbers of its points")
