@@ -13,6 +13,7 @@
 #include "ui/files/file_list.h"
 #include "ui/mouse_feed.h"
 #include "ui/panels/outline_tool.h"
+#include "ui/panels/point_tool.h"
 
 namespace shvr::ui {
 
@@ -163,6 +164,11 @@ void Viewport::press_left(const ButtonEvent& event, const When& when, const Mode
         gesture_ = Gesture::outline;
         outline_tool().begin(pane, glm::dvec2(layout_.begin + pane.box.begin), in_pane(event.at, model),
                              event.mods & GLFW_MOD_CONTROL);
+    } else if (point_tool().is_on() && kind != Pane::Kind::map && pane_ < model.panes.size() &&
+               !(event.mods & (GLFW_MOD_SHIFT | GLFW_MOD_ALT | GLFW_MOD_CONTROL))) {
+        gesture_ = Gesture::point;
+        actions.emplace_back(ProbeOnto{pane_, in_pane(event.at, model)});
+        point_tool().click();
     } else if (takes_handle(event, model)) {
         gesture_ = Gesture::cut;
     } else if (event.mods & GLFW_MOD_SHIFT) {
@@ -308,6 +314,7 @@ void Viewport::follow(const MoveEvent& event, bool ui_has_mouse, const Model& mo
         case Gesture::outline: outline_tool().drag(pixel); break;
         case Gesture::cut: drag_handle(pixel, model, actions); break;
         case Gesture::measure:
+        case Gesture::point:
         case Gesture::press: break;
         case Gesture::none:
             if (is_here) hover(model, jumps, event.mods & GLFW_MOD_SHIFT, actions);

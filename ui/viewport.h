@@ -67,6 +67,7 @@ private:
         node,     ///< moves the pressed node
         cross,    ///< moves the cross of the slices
         outline,  ///< draws the outline of a cut
+        point,    ///< answers a dialog that asks for a point
         cut,      ///< moves a face of the clip box, or the oblique cutting plane
         measure,  ///< the other end of a distance
         contrast

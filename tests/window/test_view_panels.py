@@ -212,6 +212,45 @@ class Panels(Seen):
         self.check_key("Escape", "show_dialog")
         self.until(lambda: not self.seen(window=OPERATIONS), "closed window")
 
+    def choose_of(self, row, present, wanted):
+        """In a list, from the words of its row."""
+        word = self.see(row, OPERATIONS)
+        self.do("mousemove", word["box"][0] + 9 * 14 + 60, self.middle_of(word)[1], "click", 1, pause_s=0)
+        self.see(wanted, "##Combo_00")
+        self.click_on(wanted, "##Combo_00")
+
+    def previewed(self):
+        """The operation that was previewed last."""
+        lines = [line for line in self.done() if line["op"] == "preview_operation" and "operation" in line]
+        return json.loads(lines[-1]["operation"])
+
+    def test_every_limit_of_scripts_limits_the_preview(self):
+        self.painted_scan()
+        self.choose_operation("Grow")
+        whole = self.see("Grow: ", OPERATIONS)["text"]
+        self.click_on("Only unpainted voxels", OPERATIONS)
+        self.until(lambda: self.previewed().get("only_unpainted") is True, "only unpainted voxels")
+        self.choose_of("Only in", "any group", "0  unpainted")
+        self.until(lambda: self.previewed().get("inside") == 0, "inside unpainted voxels")
+        self.choose_of("Where", "the whole scan", "a box")
+        self.until(lambda: len(self.previewed().get("box", [])) == 6, "a box")
+        word = self.see_at_rest("Intensities", OPERATIONS)   # its check box, which the box's rows have moved
+        self.do("mousemove", word["box"][0] + 9 * 14 + 8, self.middle_of(word)[1], pause_s=0)
+        self.see_frames()
+        self.do("click", 1, pause_s=0)
+        self.until(lambda: self.previewed().get("within") == [0, 0], "an intensity range")
+        self.until(lambda: self.see("Grow: ", OPERATIONS)["text"] != whole, "another count")
+
+    def test_a_click_says_which_part_is_kept(self):
+        x, y = self.painted_scan()
+        self.choose_operation("Islands")
+        self.see("Islands: ", OPERATIONS)                       # a preview of a valid suggestion
+        self.choose_of("Keep", "the largest part", "the part that is clicked")
+        self.see("click the part to keep", OPERATIONS)
+        self.check_follows(lambda: self.do("mousemove", x + 10, y, "click", 1, pause_s=0), "preview_operation")
+        self.assertEqual(len(self.previewed()["at"]), 3)
+        self.see("Islands: ", OPERATIONS)
+
     def test_the_preview_of_growing_from_seeds_follows_each_stroke(self):
         x, y = self.painted_scan()
         self.choose_operation("Grow from seeds")

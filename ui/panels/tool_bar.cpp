@@ -13,6 +13,7 @@
 #include "engine/workbench/edits/group_steps.h"
 #include "ui/panels/outline_tool.h"
 #include "ui/panels/panels.h"
+#include "ui/panels/point_tool.h"
 #include "ui/panels/style.h"
 #include "ui/panels/widgets.h"
 
@@ -242,8 +243,10 @@ void mouse_words(const Model& model)
     const bool is_over_pane = model.pointer && model.pointer->pane < model.panes.size();
     const Pane::Kind over = is_over_pane ? model.panes[model.pointer->pane].pane.kind : Pane::Kind::main;
     const bool cuts = outline_tool().is_on() && over != Pane::Kind::map;
-    const std::string words = cuts ? "left: draw the outline of the cut, Shift + left: move"
-                                   : mouse_in_words(model.tool(), over, model.preferences.key_set);
+    const bool points = point_tool().is_on() && over != Pane::Kind::map;
+    const std::string words = cuts     ? "left: draw the outline of the cut, Shift + left: move"
+                              : points ? "left: answer where, for the operation; Shift + left: move"
+                                       : mouse_in_words(model.tool(), over, model.preferences.key_set);
     ImGui::SameLine(0.0f, ImGui::GetFontSize());
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("Mouse  %s", words.c_str());

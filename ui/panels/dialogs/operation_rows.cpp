@@ -1,12 +1,16 @@
 #include "ui/panels/dialogs/operation_rows.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <utility>
 
 #include <imgui/imgui.h>
 #include <imgui/imgui_stdlib.h>
 
 #include "engine/base/text.h"
+#include "engine/workbench/lists/group_list.h"
 #include "ui/panels/dialogs/field_widgets.h"
+#include "ui/panels/dialogs/limit_rows.h"
 #include "ui/panels/outline_tool.h"
 #include "ui/panels/widgets.h"
 
@@ -30,7 +34,79 @@ std::optional<std::vector<uint8_t>> groups_in(std::string text)
     return groups;
 }
 
+/// Between frames, what is typed for parts that are not chosen now.
+struct IslandsForm {
+    int64_t voxels = 100;
+    double mm3 = 1.0;
+    bool is_in_mm3 = false;
+    std::optional<glm::dvec3> at{};
+    std::filesystem::path volume{};  ///< the scan in which `at` was clicked
+};
+IslandsForm islands_form;
+
+constexpr std::pair<IslandsOp::Keep, const char*> KEPT[] = {{IslandsOp::Keep::largest, "the largest part"},
+                                                            {IslandsOp::Keep::at_least, "parts of a size or larger"},
+                                                            {IslandsOp::Keep::at, "the part that is clicked"},
+                                                            {IslandsOp::Keep::all, "all parts, each its own group"}};
+
+void fewest_row(IslandsOp& op, const Model& model)
+{
+    IslandsForm& form = islands_form;
+    const bool has_unit = !model.volume.unit.empty();
+    field_name("Smallest part");
+    ImGui::SetNextItemWidth(8.0f * ImGui::GetFontSize());
+    if (form.is_in_mm3 && has_unit)
+        ImGui::InputDouble("##mm3", &form.mm3, 0.0, 0.0, "%.6g");
+    else
+        ImGui::InputScalar("##voxels", ImGuiDataType_S64, &form.voxels);
+    hint("Parts of exactly this size stay");
+    ImGui::SameLine();
+    if (ImGui::RadioButton("voxels", !form.is_in_mm3 || !has_unit)) form.is_in_mm3 = false;
+    ImGui::SameLine();
+    ImGui::BeginDisabled(!has_unit);
+    if (ImGui::RadioButton("mm\u00b3", form.is_in_mm3 && has_unit)) form.is_in_mm3 = true;
+    ImGui::EndDisabled();
+    form.voxels = std::max<int64_t>(form.voxels, 1);
+    form.mm3 = std::max(form.mm3, 0.0);
+    if (form.is_in_mm3 && has_unit)
+        op.mm3 = form.mm3;
+    else
+        op.voxels = form.voxels;
+}
+
 }  // namespace
+
+std::string islands_rows(IslandsOp& op, const Model& model, const std::optional<glm::dvec3>& clicked)
+{
+    using Keep = IslandsOp::Keep;
+    IslandsForm& form = islands_form;
+    if (std::exchange(form.volume, model.session.volume_path) != model.session.volume_path) form.at.reset();
+    const auto* const kept = std::ranges::find(KEPT, op.keep, &std::pair<Keep, const char*>::first);
+    field_name("Keep");
+    if (ImGui::BeginCombo("##keep", kept->second)) {
+        for (const auto& [keep, words] : KEPT)
+            if (ImGui::Selectable(words, keep == op.keep)) op.keep = keep;
+        ImGui::EndCombo();
+    }
+    hint("The other parts are erased");
+    op.voxels.reset();
+    op.mm3.reset();
+    op.at.reset();
+    if (op.keep == Keep::at_least) fewest_row(op, model);
+    if (op.keep == Keep::at) {
+        if (clicked) form.at = glm::floor(*clicked);
+        op.at = form.at;
+        field_name("At voxel");
+        glm::dvec3 shown = form.at.value_or(glm::dvec3(0.0));
+        if (ImGui::InputScalarN("##at", ImGuiDataType_Double, &shown.x, 3, nullptr, nullptr, "%.6g")) form.at = shown;
+        hint("A voxel of the part, x, y and z, counted from 0; a click in the picture or in a slice fills it in");
+    }
+    group_row("Split from", op.split_from, model, op.keep == Keep::all ? "choose a group" : "no: one group", false);
+    hint("The largest part gets this group, the next ones get the groups after it");
+    if (op.keep == Keep::at && !op.at) return "click the part to keep, in the picture or in a slice";
+    if (op.keep == Keep::all && !op.split_from) return "choose the group that the largest part gets: Split from";
+    return "";
+}
 
 std::string groups_row(const char* name, std::string& text, std::vector<uint8_t>& groups, const Model& model)
 {
@@ -44,6 +120,14 @@ std::string groups_row(const char* name, std::string& text, std::vector<uint8_t>
     if (ImGui::Button("Active group")) text = std::to_string(active);
     const std::optional<std::vector<uint8_t>> typed = groups_in(text);
     if (typed) groups = *typed;
+    if (typed && !groups.empty()) {
+        std::string named;
+        for (const uint8_t group : groups)
+            named += (named.empty() ? "" : ",  ") + label_of_group(model.session.groups, group);
+        want_glyphs(named);
+        field_name("");
+        ImGui::TextWrapped("%s", named.c_str());
+    }
     return typed ? "" : sentence("the groups are ", in_quotes(text), "; expected numbers from 1 to 255, such as 1, 2");
 }
 
@@ -54,6 +138,9 @@ void length_row(const char* name, double& length, const Model& model)
                                                          : model.volume.unit;
     field_name((std::string(name) + " (" + unit + ")").c_str());
     ImGui::InputDouble((std::string("##") + name).c_str(), &length, 0.0, 0.0, "%.6g");
+    const glm::dvec3& side = model.volume.spacing;
+    hint(sentence("A voxel is ", digits_of(side), ' ', model.volume.unit.empty() ? "" : unit, " long in x, y and z")
+             .c_str());
 }
 
 void cut_rows(LassoOp& op, const Model& model)

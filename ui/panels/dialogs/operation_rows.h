@@ -2,6 +2,7 @@
 // Rows of the window of operations that its table of keys does not draw: lists of groups, and what a cut takes from the
 // picture. Between Window::begin_ui and Window::present, main thread.
 
+#include <optional>
 #include <string>
 
 #include "engine/workbench/actions/group_actions.h"
@@ -14,6 +15,10 @@ namespace shvr::ui {
 std::string groups_row(const char* name, std::string& text, std::vector<uint8_t>& groups, const Model& model);
 /// Draws a length in the unit of the spacing.
 void length_row(const char* name, double& length, const Model& model);
+
+/// Draws the rows of islands. `clicked`: a voxel that was clicked in the picture. Only values that the chosen parts
+/// need are in `op`, so that it is valid whatever is chosen. Returns what to do next; empty: nothing is missing.
+std::string islands_rows(IslandsOp& op, const Model& model, const std::optional<glm::dvec3>& clicked);
 
 /// Draws the rows of a cut, and takes what is drawn in the picture into it (outline_tool.h).
 void cut_rows(LassoOp& op, const Model& model);

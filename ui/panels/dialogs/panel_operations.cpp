@@ -11,9 +11,11 @@
 
 #include "engine/workbench/actions/action_rows.h"
 #include "ui/panels/dialogs/field_widgets.h"
+#include "ui/panels/dialogs/limit_rows.h"
 #include "ui/panels/dialogs/operation_rows.h"
 #include "ui/panels/outline_tool.h"
 #include "ui/panels/panels.h"
+#include "ui/panels/point_tool.h"
 #include "ui/panels/widgets.h"
 
 namespace shvr::ui {
@@ -28,15 +30,23 @@ std::array<GroupOperation, sizeof...(index)> one_of_each(std::index_sequence<ind
     return {GroupOperation(std::in_place_index<index>)...};
 }
 
+/// The first suggestion of each operation, where that of scripts lacks something.
+std::array<GroupOperation, std::variant_size_v<GroupOperation>> suggestions()
+{
+    auto operations = one_of_each(std::make_index_sequence<std::variant_size_v<GroupOperation>>());
+    for (GroupOperation& each : operations)
+        if (auto* const islands = std::get_if<IslandsOp>(&each)) islands->keep = IslandsOp::Keep::largest;
+    return operations;
+}
+
 /// Between frames. Each operation keeps its own values.
 struct OperationsState {
-    std::array<GroupOperation, std::variant_size_v<GroupOperation>> operations =
-        one_of_each(std::make_index_sequence<std::variant_size_v<GroupOperation>>());
+    std::array<GroupOperation, std::variant_size_v<GroupOperation>> operations = suggestions();
     size_t chosen = GroupOperation(GrowOp()).index();
     int64_t group = 0;     ///< the active group that was last taken over
     uint64_t opening = 0;  ///< the document for which distances were suggested
     bool shows_preview = true;
-    bool is_limited_to_view = false;
+    std::string why_no_limits;  ///< and what the rows of limits or islands lack
     /// What is typed as lists of groups, and why it is none.
     std::array<std::string, std::variant_size_v<GroupOperation>> groups{};
     std::string why_no_groups;
@@ -59,26 +69,13 @@ void follow(const Model& model)
                     if (!(op.distance > 0.0)) op.distance = suggested;
                 if constexpr (requires { op.wall; })
                     if (!(op.wall > 0.0)) op.wall = suggested;
+                if constexpr (requires { op.with; })
+                    if (op.with == op.group) op.with = op.group == 1 ? 2 : 1;
                 if constexpr (std::is_same_v<std::remove_cvref_t<decltype(op)>, ThresholdOp>)
                     if (state.group == 0) op.from = model.paint_threshold();
             },
             each);
     state.group = group;
-}
-
-/// Takes what the check boxes say into the operation.
-void limit(GroupOperation& operation, const Model& model)
-{
-    std::visit(
-        [&](auto& op) {
-            if constexpr (requires { op.limits; }) {
-                const CutBox& cut = model.session.cut;
-                const VoxelBox visible{glm::max(Size3(glm::floor(cut.lower)), Size3(0)),
-                                       glm::min(Size3(glm::ceil(cut.upper)), Size3(model.volume.size))};
-                op.limits.box = state.is_limited_to_view ? std::optional(visible) : std::nullopt;
-            }
-        },
-        operation);
 }
 
 void draw_choice()
@@ -97,33 +94,50 @@ void draw_choice()
 
 void draw_operation(GroupOperation& operation, const Model& model)
 {
-    constexpr std::string_view ROWS_OF_THEIR_OWN[]{"distance", "wall", "inside"};
+    constexpr std::string_view ROWS_OF_THEIR_OWN[]{"distance", "wall", "group", "with",       "inside",        "keep",
+                                                   "voxels",   "mm3",  "at",    "split_from", "only_unpainted"};
     state.why_no_groups.clear();
+    state.why_no_limits.clear();
+    const std::optional<glm::dvec3> clicked = point_tool().take(model.probe_voxel);
     draw_choice();
-    draw_fields([&](Fields& f) { std::visit([&](auto& op) { operation_fields(f, op); }, operation); }, {}, false,
-                ROWS_OF_THEIR_OWN);
     std::visit(
         [&](auto& op) {
+            using Op = std::remove_cvref_t<decltype(op)>;
+            if constexpr (requires { op.to_group; })
+                group_row("Into group", op.to_group, model, true);
+            else if constexpr (requires { op.group; })
+                group_row("Group", op.group, model);
+            if constexpr (requires { op.with; }) group_row("With", op.with, model);
+            if constexpr (std::is_same_v<Op, IslandsOp>) state.why_no_limits = islands_rows(op, model, clicked);
+            draw_fields([&](Fields& f) { operation_fields(f, op); }, {}, false, ROWS_OF_THEIR_OWN);
             if constexpr (requires { op.distance; }) length_row("Distance", op.distance, model);
             if constexpr (requires { op.wall; }) length_row("Wall", op.wall, model);
             if constexpr (requires { op.groups; })
                 state.why_no_groups = groups_row("Groups", state.groups[state.chosen], op.groups, model);
             if constexpr (requires { op.of; })
                 state.why_no_groups = groups_row("Of groups", state.groups[state.chosen], op.of, model);
-            if constexpr (std::is_same_v<std::remove_cvref_t<decltype(op)>, LassoOp>) cut_rows(op, model);
+            if constexpr (std::is_same_v<Op, LassoOp>) cut_rows(op, model);
             if constexpr (requires { op.limits; }) {
-                field_name("Where");
-                ImGui::Checkbox("Only in the visible part (cutting planes)", &state.is_limited_to_view);
-                hint("The box that the six cutting planes leave. An oblique cutting plane does not limit operations.");
+                const std::string why = limit_rows(op.limits, model, clicked);
+                if (state.why_no_limits.empty()) state.why_no_limits = why;
             }
         },
         operation);
+}
+
+/// Whether the window waits for a click in the picture.
+bool awaits_click(const GroupOperation& operation)
+{
+    const auto* const islands = std::get_if<IslandsOp>(&operation);
+    const bool has_limits = !std::holds_alternative<TraceFromMaskOp>(operation);
+    return (islands && islands->keep == IslandsOp::Keep::at) || (has_limits && limit_rows_take_clicks());
 }
 
 /// Returns why the operation cannot be carried out; empty: it can.
 std::string refusal(const Model& model, const GroupOperation& operation, const std::string& line)
 {
     if (!state.why_no_groups.empty()) return state.why_no_groups;
+    if (!state.why_no_limits.empty()) return state.why_no_limits;
     if (const auto* const cut = std::get_if<LassoOp>(&operation); cut && cut->polygon.empty())
         return "draw an outline: drag in the picture with the left button";
     try {
@@ -178,6 +192,7 @@ void operations_window(const Model& model, Actions& actions)
     if (model.dialog != Dialog::operation || !model.is_open) {
         if (!model.previewed.empty()) actions.push_back(PreviewOperation{});
         outline_tool().set_on(false);
+        point_tool().set_on(false);
         return;
     }
     follow(model);
@@ -189,14 +204,14 @@ void operations_window(const Model& model, Actions& actions)
     bool is_shown = true;
     const bool is_drawn =
         ImGui::Begin(WINDOW, &is_shown, ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
+    point_tool().set_on(is_drawn && awaits_click(state.operations[state.chosen]));
     outline_tool().set_on(is_drawn && std::holds_alternative<LassoOp>(state.operations[state.chosen]));
     if (is_drawn) {
         keep_on_screen(lower_edge);
         const OutlineTool::Wish wish = outline_tool().take_wish();
         if (wish == OutlineTool::Wish::cancel) outline_tool().clear();
         draw_operation(state.operations[state.chosen], model);
-        GroupOperation operation = state.operations[state.chosen];
-        limit(operation, model);
+        const GroupOperation operation = state.operations[state.chosen];
         const std::string line = std::visit([](const auto& op) { return line_of(Action(op)); }, operation);
         const std::string why = refusal(model, operation, line);
         ImGui::Checkbox("Preview", &state.shows_preview);

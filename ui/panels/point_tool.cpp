@@ -1,0 +1,11 @@
+#include "ui/panels/point_tool.h"
+
+namespace shvr::ui {
+
+PointTool& point_tool()
+{
+    static PointTool tool;
+    return tool;
+}
+
+}  // namespace shvr::ui
