@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_set>
 #include <utility>
 
 #include "engine/annotation/files/brick_boxes.h"
@@ -14,6 +15,41 @@ namespace shvr {
 MaskSource::MaskSource(const Mask& mask, const VolumeInfo& volume)
     : SparseSource(mask, info_beside(volume, "mask", VoxelType::uint8))
 {}
+
+namespace {
+
+bool is_label(double value)
+{
+    return value >= 0.0 && value == std::trunc(value);
+}
+
+/// Reads the whole mask to say how many labels it has. Fails in any case.
+[[noreturn]] void refuse_labels(const VolumeSource& mask, const std::string& file)
+{
+    constexpr size_t MAX_COUNTED = 1'000'000;
+    const VoxelType type = mask.info().type;
+    std::unordered_set<double> labels;
+    double highest = 0.0;
+    for_each_brick_box(mask, [&](const VoxelBox& box) {
+        const Size3 size = box.size();
+        std::vector<double> values(size_t(size.x * size.y * size.z));
+        std::vector<std::byte> voxels(values.size() * bytes_of(type));
+        mask.read(box, voxels);
+        load_voxels(type, voxels.data(), values);
+        for (const double value : values) {
+            if (!is_label(value) || value == 0.0) continue;
+            highest = std::max(highest, value);
+            if (labels.size() < MAX_COUNTED) labels.insert(value);
+        }
+    });
+    fail(file, ": holds ", labels.size() < MAX_COUNTED ? "" : "at least ", counted(int64_t(labels.size()), "label"),
+         ", the highest ", digits_of(highest), ", of type ", name_of(type),
+         "; expected at most 255 labels, from 1 to 255: ",
+         labels.size() <= 255 ? "renumber them" : "choose up to 255 and renumber them",
+         " in the program that wrote the file");
+}
+
+}  // namespace
 
 std::vector<uint8_t> groups_in(const VolumeSource& mask, const VoxelBox& box, const std::string& file)
 {
@@ -34,6 +70,7 @@ std::vector<uint8_t> groups_in(const VolumeSource& mask, const VoxelBox& box, co
                 groups[first + x] = uint8_t(row[x]);
                 continue;
             }
+            if (is_label(row[x])) refuse_labels(mask, file);
             fail(file, ": holds ", row[x], " in voxel ", digits_of(box.lower + position_of(int64_t(first + x), size)),
                  ", of type ", name_of(type), "; expected whole numbers from 0 to 255, the groups of a mask");
         }

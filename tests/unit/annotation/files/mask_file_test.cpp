@@ -9,6 +9,7 @@
 
 #include "engine/annotation/files/mask_source.h"
 #include "engine/base/file.h"
+#include "engine/formats/open_volume.h"
 #include "tests/support/volume_files.h"
 
 using namespace shvr;
@@ -153,4 +154,25 @@ TEST_CASE("a mask as a volume holds the same voxels, in any box, and makes the s
         const std::vector<MaskBrickChange> again = mask_changes(source, "a"), before = load_mask(path, size);
         CHECK((again == before));
     }
+}
+
+TEST_CASE("a mask with labels above 255 is refused with their number and the highest")
+{
+    const TemporaryFolder folder;
+    std::string voxels;
+    for (int i = 0; i < 400; ++i)  // labels 0 to 299, one of them far above
+        for (const int byte : {i % 300 == 299 ? 0x10 : i % 300 & 255, i % 300 == 299 ? 0x27 : i % 300 >> 8})
+            voxels += char(byte);
+    const auto source = open_volume(folder.write(
+        "labels.nrrd",
+        "NRRD0004\ntype: uint16\ndimension: 3\nsizes: 20 20 1\nencoding: raw\nendian: little\n\n" + voxels));
+    std::string said;
+    try {
+        static_cast<void>(mask_changes(*source, "labels.nrrd"));
+    } catch (const Error& error) {
+        said = error.what();
+    }
+    CHECK(said ==
+          "labels.nrrd: holds 299 labels, the highest 10000, of type uint16; expected at most 255 labels, from 1 to "
+          "255: choose up to 255 and renumber them in the program that wrote the file");
 }
