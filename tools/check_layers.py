@@ -113,7 +113,8 @@ MAY_INCLUDE = {
     "engine/workbench/services",
     "ui/files": "engine/base engine/remote engine/formats",
     "ui/thumbnails": "engine/base engine/workbench/models ui/files",
-    "ui/panels": "ui/thumbnails engine/base engine/session engine/session/words engine/workbench/appearance engine/workbench/curves engine/workbench/models "
+    "ui/panels/tools": "engine/workbench/models engine/workbench/actions engine/workbench/sight",
+    "ui/panels": "ui/thumbnails ui/panels/tools engine/base engine/session engine/session/words engine/workbench/appearance engine/workbench/curves engine/workbench/models "
     "engine/workbench/actions engine/workbench/lists engine/workbench/sight engine/workbench/edits "
     "engine/workbench/bindings",
     "ui/panels/look": "engine/session engine/workbench/curves engine/workbench/models engine/workbench/actions "
@@ -121,11 +122,11 @@ MAY_INCLUDE = {
     "ui/panels/start": "engine/base engine/remote engine/workbench/models engine/workbench/bindings ui/files ui/thumbnails ui/panels",
     "ui/panels/banners": "engine/base engine/workbench/models engine/workbench/actions engine/workbench/forms ui/panels",
     "ui/panels/dialogs": "engine/base engine/session engine/workbench/models engine/workbench/actions "
-    "engine/workbench/lists engine/workbench/forms engine/tasks ui/files ui/thumbnails ui/panels",
+    "engine/workbench/lists engine/workbench/forms engine/tasks ui/files ui/thumbnails ui/panels ui/panels/tools",
     "ui/panels/touch": "engine/workbench/models engine/workbench/lists engine/workbench/edits engine/workbench/bindings "
     "engine/workbench/words ui/panels",
     "ui": "engine/base engine/gpu engine/live haptics engine/workbench engine/workbench/models engine/workbench/sight "
-    "engine/workbench/edits engine/workbench/bindings ui/files ui/thumbnails ui/panels",
+    "engine/workbench/edits engine/workbench/bindings ui/files ui/thumbnails ui/panels ui/panels/tools",
     "tests": "*",
     "tests/reference": "engine/annotation engine/annotation/operations engine/annotation/trace",
     "tools/report": "engine/base engine/pages",

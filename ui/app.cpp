@@ -11,7 +11,7 @@
 #include "engine/workbench/bindings/preferences_file.h"
 #include "ui/browser.h"
 #include "ui/panels/field_keys.h"
-#include "ui/panels/outline_tool.h"
+#include "ui/panels/tools/outline_tool.h"
 
 namespace shvr::ui {
 

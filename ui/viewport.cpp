@@ -12,8 +12,8 @@
 #include "engine/workbench/sight/hits.h"
 #include "ui/files/file_list.h"
 #include "ui/mouse_feed.h"
-#include "ui/panels/outline_tool.h"
-#include "ui/panels/point_tool.h"
+#include "ui/panels/tools/outline_tool.h"
+#include "ui/panels/tools/point_tool.h"
 
 namespace shvr::ui {
 

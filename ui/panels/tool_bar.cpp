@@ -11,10 +11,10 @@
 #include "engine/workbench/bindings/tools.h"
 #include "engine/workbench/edits/edit.h"
 #include "engine/workbench/edits/group_steps.h"
-#include "ui/panels/outline_tool.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/point_tool.h"
 #include "ui/panels/style.h"
+#include "ui/panels/tools/outline_tool.h"
+#include "ui/panels/tools/point_tool.h"
 #include "ui/panels/widgets.h"
 
 namespace shvr::ui {

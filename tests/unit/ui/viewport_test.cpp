@@ -10,7 +10,7 @@
 #include "engine/session/session_patch.h"
 #include "engine/workbench/actions/action_rows.h"
 #include "tests/support/model_world.h"
-#include "ui/panels/outline_tool.h"
+#include "ui/panels/tools/outline_tool.h"
 
 using namespace shvr;
 using namespace shvr::test;

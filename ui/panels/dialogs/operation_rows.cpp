@@ -11,7 +11,7 @@
 #include "engine/workbench/lists/group_list.h"
 #include "ui/panels/dialogs/field_widgets.h"
 #include "ui/panels/dialogs/limit_rows.h"
-#include "ui/panels/outline_tool.h"
+#include "ui/panels/tools/outline_tool.h"
 #include "ui/panels/widgets.h"
 
 namespace shvr::ui {

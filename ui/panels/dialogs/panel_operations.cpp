@@ -13,9 +13,9 @@
 #include "ui/panels/dialogs/field_widgets.h"
 #include "ui/panels/dialogs/limit_rows.h"
 #include "ui/panels/dialogs/operation_rows.h"
-#include "ui/panels/outline_tool.h"
 #include "ui/panels/panels.h"
-#include "ui/panels/point_tool.h"
+#include "ui/panels/tools/outline_tool.h"
+#include "ui/panels/tools/point_tool.h"
 #include "ui/panels/widgets.h"
 
 namespace shvr::ui {

@@ -1,4 +1,4 @@
-#include "ui/panels/outline_tool.h"
+#include "ui/panels/tools/outline_tool.h"
 
 #include "engine/workbench/sight/gestures.h"
 #include "engine/workbench/sight/outlines.h"

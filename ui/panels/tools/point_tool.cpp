@@ -1,4 +1,4 @@
-#include "ui/panels/point_tool.h"
+#include "ui/panels/tools/point_tool.h"
 
 namespace shvr::ui {
 
