@@ -107,7 +107,7 @@ std::vector<double> values_of(std::span<const StudyRow> rows, const StudyConditi
 
 bool PairedDifference::is_better(int better_sign) const
 {
-    if (difference.count < 2) return false;  // one pair has no interval
+    if (difference.count < MIN_PAIRS) return false;
     return better_sign > 0 ? difference.interval.low > 0.0 : better_sign < 0 && difference.interval.high < 0.0;
 }
 

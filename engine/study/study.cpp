@@ -170,6 +170,18 @@ private:
                         if (name == stem + suffix() + ".csv") own_items_.insert(i);
                     }
             }
+            keep_others(name, rows);
+        }
+    }
+
+    /// Keeps the rows of a file that are not of this plan, such as those of more seeds, for the file is written again.
+    void keep_others(const std::string& name, const std::vector<StudyRow>& rows)
+    {
+        for (const StudyRow& row : rows) {
+            const bool is_planned = std::ranges::any_of(plan_.items, [&](const StudyItem& item) {
+                return name == file_stem(item) + suffix() + ".csv" && is_row_of(item, row);
+            });
+            if (!is_planned) other_rows_[name].push_back(row);
         }
     }
 
@@ -182,6 +194,10 @@ private:
                     repeats_[i] = repeat;
                     if (file.filename() == "repeats" + suffix() + ".csv") own_pairs_.insert(i);
                 }
+        if (file.filename() != "repeats" + suffix() + ".csv") return;
+        for (const StudyRepeat& repeat : repeats)
+            if (std::ranges::none_of(plan_.pairs, [&](const StudyPair& pair) { return is_repeat_of(pair, repeat); }))
+                other_repeats_.push_back(repeat);
     }
 
     /// Groups the unfinished items of the plan into pieces, one per phantom, and keeps the pieces of this part.
@@ -241,8 +257,8 @@ private:
     /// In the names of the files of a part.
     std::string suffix() const { return run_.of == 1 ? "" : sentence("-part-", run_.part, "-of-", run_.of); }
 
-    /// Writes all files in the order of the plan. A part writes only the rows that it made itself, in this run or an
-    /// earlier one, into its own files.
+    /// Writes all files in the order of the plan, and then the rows that they had beyond it. A part writes only the
+    /// rows that it made itself, in this run or an earlier one, into its own files.
     void write_rows() const
     {
         std::map<std::string, std::vector<StudyRow>> files;
@@ -250,7 +266,9 @@ private:
             if (rows_[i] && (run_.of == 1 || own_items_.contains(i)))
                 files[file_stem(plan_.items[i])].push_back(*rows_[i]);
         const std::string part = suffix();
-        for (const auto& [stem, rows] : files) {
+        for (auto& [stem, rows] : files) {
+            if (const auto others = other_rows_.find(stem + part + ".csv"); others != other_rows_.end())
+                rows.insert(rows.end(), others->second.begin(), others->second.end());
             const std::string csv = csv_of(rows);
             write_file_atomically(run_.folder / (stem + part + ".csv"), std::as_bytes(std::span(csv)));
         }
@@ -258,6 +276,7 @@ private:
         for (size_t i = 0; i < repeats_.size(); ++i)
             if (repeats_[i] && (run_.of == 1 || own_pairs_.contains(i))) repeats.push_back(*repeats_[i]);
         if (repeats.empty()) return;
+        repeats.insert(repeats.end(), other_repeats_.begin(), other_repeats_.end());
         const std::string csv = csv_of(repeats);
         write_file_atomically(run_.folder / ("repeats" + part + ".csv"), std::as_bytes(std::span(csv)));
     }
@@ -289,7 +308,9 @@ private:
     const StudyRun& run_;
     std::vector<std::optional<StudyRow>> rows_;  ///< of plan_.items
     std::vector<std::optional<StudyRepeat>> repeats_;
-    std::set<size_t> own_items_, own_pairs_;  ///< those that this part made
+    std::set<size_t> own_items_, own_pairs_;                   ///< those that this part made
+    std::map<std::string, std::vector<StudyRow>> other_rows_;  ///< not of the plan, by the name of their file
+    std::vector<StudyRepeat> other_repeats_;                   ///< not of the plan, in the file that this part writes
     std::vector<Piece> pieces_;
     size_t to_make_ = 0, made_ = 0, made_pairs_ = 0;  ///< by this run
     std::mutex mutex_;

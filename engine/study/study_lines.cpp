@@ -11,7 +11,7 @@ namespace shvr {
 namespace {
 
 constexpr int64_t MAX_STUDY_BYTES = int64_t(1) << 28;  // a million rows
-constexpr const char* REMAKE = "; make the file again with `shvr study`";
+constexpr const char* REMAKE = "; delete the line or the file, and `shvr study` makes its rows again";
 
 std::vector<std::string_view> fields_in(std::string_view line)
 {

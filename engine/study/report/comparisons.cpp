@@ -126,15 +126,21 @@ std::string limits_of(const StudyReport& report)
     std::string markup;
     for (const StudyTask task : REPORTED_TASKS) {
         std::string words;
+        size_t too_few = 0;
         for (const MainComparison& each : comparisons_of(report, task)) {
             const size_t pairs = each.paired.difference.count;
-            if (each.condition == centre_of(report, task))
+            if (pairs > 0 && pairs < MIN_PAIRS)
+                ++too_few;
+            else if (each.condition == centre_of(report, task))
                 words += sentence(" At the centre ", each.paired.worse, " of ", pairs, " pairs are worse.");
             else if (pairs > 0 && each.verdict != "better")
                 words += sentence(" No gain with ", words_of(each.condition), ": difference ",
                                   with_interval(each.paired.difference), ", ", each.paired.worse, " of ", pairs,
                                   " pairs worse.");
         }
+        if (too_few > 0)
+            words += sentence(" ", too_few, too_few == 1 ? " condition has" : " conditions have", " fewer than ",
+                              MIN_PAIRS, " pairs, too few for an answer: a larger study has more.");
         if (const std::string best = best_free_hand(report, task); !best.empty()) words += " " + best;
         if (!words.empty())
             markup += sentence("<p><strong>", name_of(task), "</strong>, ", main_outcome_in_words(task), ".",

@@ -167,9 +167,11 @@ std::string claim_of(const StudyReport& report, StudyTask task)
     const int better = column_of(main_outcome(task)).better;
     const PairedDifference paired = paired_difference(report.rows, centre, *base, main_outcome(task));
     if (paired.difference.count == 0) return {};
-    const char* const verdict = paired.is_better(better)  ? "helps"
-                                : paired.is_worse(better) ? "harms"
-                                                          : "makes no difference that this study can see for";
+    const std::string few = sentence("cannot be judged from fewer than ", MIN_PAIRS, " pairs of");
+    const std::string verdict = paired.difference.count < MIN_PAIRS ? few
+                                : paired.is_better(better)          ? "helps"
+                                : paired.is_worse(better)           ? "harms"
+                                                                    : "makes no difference that this study can see for";
     return sentence(name_of(task), ": touch (", words_of(centre), ") ", verdict, " simulated annotators; mean ",
                     main_outcome_in_words(task), ' ', short_digits(paired.before.mean), " without it, ",
                     short_digits(paired.after.mean), " with it; difference ", short_digits(paired.difference.mean),

@@ -75,6 +75,11 @@ class Study(CliTest):
         self.study("begun", *chosen[:2], "--seeds", 1)
         self.assertEqual(self.study("begun", *chosen)["made"], 2)
         self.assertEqual((self.folder / "begun" / "rows.csv").read_bytes(), whole)
+        # A smaller study in the same folder loses no row of the larger one.
+        self.assertEqual(self.study("one", *chosen[:2], "--seeds", 1)["made"], 0)
+        self.study("one", "--conditions", self.conditions("paint,none,potential,1,3"), "--seeds", 1)
+        again = (self.folder / "one" / "rows.csv").read_text().splitlines()
+        self.assertEqual(sorted(again), sorted(whole.decode().splitlines()))
 
     def test_annotations_are_kept_on_request_and_score_as_their_rows_say(self):
         chosen = ["--conditions", self.conditions("trace,none,potential,1.5,10", "paint,none,potential,1.5,10"),

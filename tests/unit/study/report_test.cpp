@@ -312,7 +312,13 @@ TEST_CASE("reports of few rows are pages, too, and claim nothing")
         CHECK(count_of("helps", page) == 0);
         CHECK(page.find("nan") == std::string::npos);
     }
-    CHECK(claim_of(report, StudyTask::trace).find("no difference that this study can see") != std::string::npos);
+    CHECK(claim_of(report, StudyTask::trace).find("cannot be judged from fewer than 5 pairs") != std::string::npos);
+    // Three pairs that all are better.
+    report.rows = all;
+    keep_seeds(3, report.rows, [](const StudyRow&) { return true; });
+    CHECK(count_of("helps", page_of(report)) == 0);
+    CHECK(count_of("No gain", limits_of(report)) == 0);
+    CHECK(limits_of(report).find("fewer than 5 pairs, too few for an answer") != std::string::npos);
 }
 
 TEST_CASE("a condition is compared with no touch at the same noise and ball")
