@@ -20,16 +20,18 @@ namespace {
 
 bool is_label(double value)
 {
-    return value >= 0.0 && value == std::trunc(value);
+    constexpr double MAX_LABEL = 4294967295.0;  // of uint32
+    return value >= 0.0 && value <= MAX_LABEL && value == std::trunc(value);
 }
 
-/// Reads the whole mask to say how many labels it has. Fails in any case.
-[[noreturn]] void refuse_labels(const VolumeSource& mask, const std::string& file)
+/// Reads the whole mask. If all of its values are labels, fails and says how many there are.
+void refuse_labels(const VolumeSource& mask, const std::string& file)
 {
     constexpr size_t MAX_COUNTED = 1'000'000;
     const VoxelType type = mask.info().type;
     std::unordered_set<double> labels;
     double highest = 0.0;
+    bool has_others = false;
     for_each_brick_box(mask, [&](const VoxelBox& box) {
         const Size3 size = box.size();
         std::vector<double> values(size_t(size.x * size.y * size.z));
@@ -37,11 +39,13 @@ bool is_label(double value)
         mask.read(box, voxels);
         load_voxels(type, voxels.data(), values);
         for (const double value : values) {
-            if (!is_label(value) || value == 0.0) continue;
+            has_others |= !is_label(value);
+            if (has_others || value == 0.0) continue;
             highest = std::max(highest, value);
             if (labels.size() < MAX_COUNTED) labels.insert(value);
         }
     });
+    if (has_others) return;
     fail(file, ": holds ", labels.size() < MAX_COUNTED ? "" : "at least ", counted(int64_t(labels.size()), "label"),
          ", the highest ", digits_of(highest), ", of type ", name_of(type),
          "; expected at most 255 labels, from 1 to 255: ",

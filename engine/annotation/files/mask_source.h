@@ -15,8 +15,8 @@ public:
 
 /// Returns, in ascending order, the records that turn an unpainted mask of the volume's size into `groups`. The cost is
 /// proportional to the data that the source stores. Voxels may be of any type. Fails if a voxel is not a whole number
-/// from 0 to 255: naming `file` and the voxel or, at a whole number above 255, how many labels there are and the
-/// highest.
+/// from 0 to 255: naming `file` and the voxel or, if all are labels as of other programs, how many there are and
+/// the highest.
 std::vector<MaskBrickChange> mask_changes(const VolumeSource& groups, const std::string& file);
 
 /// The voxels of a box of a mask as groups; fails like `mask_changes`.
