@@ -506,7 +506,7 @@ void fields(Fields& f, Measurement& measurement)
             measurement.points.push_back(point.vector(COORDINATE));
     };
     const auto written = [&]() -> std::optional<std::string> {
-        if (measurement.points.empty()) return std::nullopt;
+        if (measurement.points.empty() || measurement.kind == MeasureKind::distance) return std::nullopt;
         std::string text;
         for (const glm::dvec3& point : measurement.points)
             text += sentence(text.empty() ? "[[" : ",[", digits_of(point.x), ',', digits_of(point.y), ',',
@@ -514,16 +514,18 @@ void fields(Fields& f, Measurement& measurement)
         return text + ']';
     };
     f.other("points", read, written,
-            {.meaning = "its points",
+            {.meaning = "points of a path or an angle",
              .allowed = "array of 2 ... 200 `[x, y, z]`, in voxels; 0.5 is the middle of the first",
-             .standard = "required, or `from` and `to`"});
+             .standard = "required; a distance has `from` and `to`"});
     static_assert(MAX_MEASURED_POINTS == 200);
-    std::optional<glm::dvec3> from, to;  // as earlier versions wrote distances
-    const About end{.meaning = "an end of a distance, in files of earlier versions, which have no `points`",
-                    .allowed = "`[x, y, z]`, in voxels",
-                    .standard = "none"};
-    f.vector("from", from, COORDINATE, end);
-    f.vector("to", to, COORDINATE, end);
+    std::optional<glm::dvec3> from, to;
+    if (measurement.kind == MeasureKind::distance && measurement.points.size() == 2) {
+        from = measurement.points[0];
+        to = measurement.points[1];
+    }
+    const char* const ALLOWED = "`[x, y, z]`, in voxels; 0.5 is the middle of the first";
+    f.vector("from", from, COORDINATE, {.meaning = "one end of a distance", .allowed = ALLOWED, .standard = "none"});
+    f.vector("to", to, COORDINATE, {.meaning = "its other end", .allowed = ALLOWED, .standard = "none"});
     if (from && to && measurement.points.empty()) measurement.points = {*from, *to};
     f.check("points", is_count_of(measurement.kind, measurement.points.size()),
             "2 points for a distance, 2 or more for a path and 3 for an angle");

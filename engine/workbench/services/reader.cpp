@@ -134,6 +134,8 @@ void Reader::act(const MeasureAt& action)
 
 void Reader::act(const EndMeasure&)
 {
+    if (document_->session.probe.measure != MeasureKind::path || document_->measuring.size() < 2)
+        decline("No path with two points is begun, so none is ended");
     complete_measurement();
 }
 

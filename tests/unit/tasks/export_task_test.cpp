@@ -117,8 +117,8 @@ TEST_CASE("every option of an export is documented")
         CHECK(!option.standard.empty());
     }
     CHECK(names == std::set<std::string>{"mask", "labels", "ome_zarr", "offset", "trace", "break_loops", "mesh",
-                                         "space", "metrics", "sections", "axis", "surface", "surface_groups", "smooth",
-                                         "decimate"});
+                                         "space", "metrics", "measurements", "sections", "axis", "surface",
+                                         "surface_groups", "smooth", "decimate"});
 }
 
 TEST_CASE("patterns of flower heads follow the measures where sections are stated, named or in use")

@@ -77,7 +77,7 @@ TEST_CASE("moved planes and measurements are told, not the numbers of their corn
     CHECK(words_of(R"({"measurements":null})", one) == "removed all measurements");
     const char* const named = R"({"measurements":[{"name":"stem","points":[[0,0,0],[1,2,3]]}]})";
     CHECK(words_of(R"({"measurements":[{"name":"petiole","points":[[0,0,0],[1,2,3]]}]})", named) ==
-          "renamed the measurement 'stem' to 'petiole'");
+          R"(renamed the measurement "stem" to "petiole")");
     CHECK(words_of(R"({"measurements":[{"name":"stem","points":[[0,0,0],[1,2,3]]},
                        {"kind":"angle","points":[[0,0,0],[1,2,3],[4,5,6]]}]})",
                    named) == "measured an angle");
