@@ -21,6 +21,13 @@ std::string next_step(MeasureKind kind, size_t points)
     return points == 1 ? "One side of the angle; click its vertex" : "The vertex; click the other side of the angle";
 }
 
+/// Declines a number that no measurement has, as in the log of another session.
+void check_number(size_t number, const Document& document)
+{
+    if (number < 1 || number > document.session.measurements.size())
+        decline(sentence("There is no measurement ", number));
+}
+
 }  // namespace
 
 Reader::Reader(Desk& desk, PreferenceKeeper& keeper, Others others)
@@ -154,6 +161,7 @@ void Reader::complete_measurement()
 
 void Reader::act(const RenameMeasurement& action)
 {
+    check_number(action.number, *document_);
     Session after = document_->session;
     after.measurements.at(action.number - 1).name = action.to;
     others_.take_session(std::move(after));
@@ -161,6 +169,7 @@ void Reader::act(const RenameMeasurement& action)
 
 void Reader::act(const RemoveMeasurement& action)
 {
+    check_number(action.number, *document_);
     Session after = document_->session;
     const auto which = after.measurements.begin() + ptrdiff_t(action.number - 1);
     const std::string name = name_of(*which, action.number);
