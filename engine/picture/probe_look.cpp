@@ -38,7 +38,7 @@ std::optional<ProbeLook> shown_probe(const Session& session, const VolumeInfo& v
 
 std::optional<ProbeLook> in_picture(std::optional<ProbeLook> look, PictureProbe shown)
 {
-    if (look && shown == PictureProbe::point) look->ball_share = BALL_IN_SHELL;
+    if (look && shown == PictureProbe::point) look->ball_share = std::min(look->ball_share, BALL_IN_SHELL);
     return look;
 }
 
