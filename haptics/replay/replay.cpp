@@ -221,9 +221,14 @@ ReplayResult replay_trace(const Trace& trace, const ReplayOptions& options, cons
         result.tick_ns.push_back(uint64_t(std::chrono::nanoseconds(Clock::now() - begin).count()));
         player.write(step_now);
         tally.add(tick, state, step_now);
+        result.assisted_ticks += force_settings.assistance;
         if (keep_steps) result.steps.push_back(step_now);
         if (options.note_tick)
-            options.note_tick({.now_ns = tick.now_ns, .read = read, .device = state, .step = step_now});
+            options.note_tick({.now_ns = tick.now_ns,
+                               .read = read,
+                               .device = state,
+                               .step = step_now,
+                               .energy_j = player.work_j().value_or(result.energy_j)});
     }
     result.is_recorded = is_recorded;
     result.ticks = trace.ticks.size();

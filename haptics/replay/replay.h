@@ -16,6 +16,7 @@ struct ReplayedTick {
     ReadResult read = ReadResult::fresh;
     DeviceState device;
     ForceStep step;
+    double energy_j = 0.0;  ///< as ReplayResult::energy_j, up to this tick
 };
 
 struct ReplayOptions {
@@ -41,6 +42,7 @@ struct ReplayResult {
     double energy_j = 0.0;        ///< work of the forces along the hand's path; positive if the forces drove the hand
     double proxy_rms = 0.0;       ///< RMS distance between probe and proxy in contact, physical units
     uint64_t contact_ticks = 0, patches = 0;
+    uint64_t assisted_ticks = 0;        ///< in which the settings had assistance on; without it, forces are 0
     uint32_t objects = 0, swaps = 0;    ///< number of objects touched on the last device; number of device changes
     bool is_recorded = false;           ///< relevance came from the trace; false: it was recomputed
     uint64_t hash = 0;                  ///< FNV-1a of all forces' bits

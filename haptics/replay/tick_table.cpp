@@ -45,7 +45,7 @@ std::string tick_table_head(const std::string& unit)
     add_axes(head, "probe", unit);
     add_axes(head, "proxy", unit);
     add_axes(head, "force", "n");
-    return head + "in_contact,relevant_share,objects,flags\n";
+    return head + "in_contact,relevant_share,objects,flags,energy_j\n";
 }
 
 std::string tick_table_line(const ReplayedTick& replayed, uint64_t tick, uint64_t begin_ns)
@@ -61,7 +61,8 @@ std::string tick_table_line(const ReplayedTick& replayed, uint64_t tick, uint64_
     add(line, step.proxy);
     add(line, step.force_n);
     line.append(step.in_contact ? "1," : "0,").append(digits_of(step.relevant_share)).append(",");
-    return line.append(std::to_string(step.objects)).append(",").append(flag_words(step.flags)).append("\n");
+    line.append(std::to_string(step.objects)).append(",").append(flag_words(step.flags)).append(",");
+    return line.append(digits_of(replayed.energy_j)).append("\n");
 }
 
 TickTable::TickTable(const std::filesystem::path& path, const std::string& unit)

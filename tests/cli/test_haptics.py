@@ -54,6 +54,17 @@ class Haptics(CliTest):
         self.assert_keys(result["tick_us"], ["p50", "p99", "max"])
         return result
 
+    # Kind (Touch): a trace recorded while assistance was off
+    def test_a_trace_without_assistance_says_that_it_has_no_forces(self):
+        trace = self.trace(ticks=400)
+        off = self.folder / "off.trace"
+        off.write_text(trace.read_text().replace('"assistance": true, ', ""))
+        self.assertNotIn("assistance", self.check("haptics", "replay", trace, "--volume", self.volume).stderr)
+        self.assertIn("off.trace: settings: key assistance is false in all ticks",
+                      self.check("haptics", "replay", off, "--volume", self.volume).stderr)
+        self.assertEqual(self.replay(off)["assisted_ticks"], 0)
+        self.assertEqual(self.replay(trace)["assisted_ticks"], 400)
+
     def test_the_same_trace_gives_the_same_forces(self):
         trace = self.trace()
         first, again = self.replay(trace), self.replay(trace)
@@ -183,6 +194,7 @@ class Haptics(CliTest):
         squares = [sum((float(row[f"proxy_{axis}_um"]) - float(row[f"probe_{axis}_um"]))**2 for axis in "xyz")
                    for row in rows if row["in_contact"] == "1"]
         self.assertAlmostEqual(math.sqrt(sum(squares) / len(squares)), result["proxy_rms_um"], places=9)
+        self.assertAlmostEqual(1e3 * float(rows[-1]["energy_j"]), result["energy_mj"], places=12)
         self.assertAlmostEqual(float(rows[300]["time_s"]), 0.3)
         # The hand begins at (-3 mm, 0, 0); 0.25 mm there are a voxel of 2 um, around (65, 65, 65) um.
         self.assertAlmostEqual(float(rows[0]["probe_x_um"]), 65 - 24, places=9)
@@ -211,7 +223,8 @@ class Haptics(CliTest):
         small = self.replay(trace, "--radius", "6")
         self.assertEqual(small["probe_radius"], 12)
         self.assertNotEqual(small["forces_hash"], as_is["forces_hash"])
-        self.assertEqual(self.replay(trace, "--groups", "5,7")["contact_ticks"], 0)
+        unfelt = self.replay(trace, "--groups", "5,7")
+        self.assertEqual((unfelt["contact_ticks"], unfelt["groups"], as_is["groups"]), (0, [5, 7], None))
         self.assertEqual(self.replay(trace, "--groups", "5,0")["contact_ticks"], as_is["contact_ticks"])
         # Nothing is felt before the first answer.
         late = self.replay(trace, "--latency", "300")
@@ -230,9 +243,11 @@ class Haptics(CliTest):
         def away(*arguments):
             """How far the hand is led from its path, at most, in metres."""
             table = self.folder / "ticks.csv"
-            self.replay(trace, "--device-model", "touch", "--csv", table, *arguments)
+            result = self.replay(trace, "--device-model", "touch", "--csv", table, *arguments)
             with table.open(newline="") as file:
-                at = [float(row["hand_y_m"]) for row in csv.DictReader(file)]
+                rows = list(csv.DictReader(file))
+            self.assertAlmostEqual(1e3 * float(rows[-1]["energy_j"]), result["energy_mj"], places=9)
+            at = [float(row["hand_y_m"]) for row in rows]
             path = [0.0012 * math.sin(i / 150) * min(i / 1500, 1) for i in range(1500)]
             return max(abs(a - b) for a, b in zip(at, path))
         loose, firm = away("--hand-stiffness", "50"), away("--hand-stiffness", "3000")

@@ -172,6 +172,17 @@ void add_host_budget_option(CLI::App& command, Common& common, const std::string
     command.add_option("--budget-host", common.budget_host_mib, help)->type_name("MIB")->check(whole_mib());
 }
 
+CLI::Validator number_between(double least, double most)
+{
+    return {[least, most](std::string& text) {
+                const std::optional<double> number = number_of(text);
+                return number && *number >= least && *number <= most
+                           ? std::string()
+                           : sentence(in_quotes(text), " is given; expected a number from ", least, " to ", most);
+            },
+            sentence("FLOAT in [", least, " - ", most, "]")};
+}
+
 void add_device_options(CLI::App& command, Common& common)
 {
     command.add_option("--device", common.device, "Vulkan device: part of its name, or its index");

@@ -47,6 +47,8 @@ void add_spacing_options(CLI::App& command, const std::function<void(const glm::
 void add_device_options(CLI::App& command, Common& common);
 /// --budget-host
 void add_host_budget_option(CLI::App& command, Common& common, const std::string& help);
+/// Checks that an option is a number in this range; unlike CLI::Range, it refuses NaN.
+CLI::Validator number_between(double least, double most);
 /// Adds --ome-zarr, the version of the format to write; null if the option is not given.
 void add_version_option(CLI::App& command, std::optional<OmeZarrVersion>& version, const std::string& otherwise);
 /// --believe, for commands that open annotation.

@@ -268,7 +268,7 @@ void add_export(CLI::App& program)
             "than the shortest side of a voxel from the full one, or a volume would change by 0.4 %, and "
             "where three groups meet. Groups that touch keep equal borders")
         ->type_name("SHARE")
-        ->check(CLI::Range(MIN_SURFACE_SHARE, 1.0))
+        ->check(number_between(MIN_SURFACE_SHARE, 1.0))
         ->needs(surface);
     add_host_budget_option(
         *command, options->common,

@@ -90,9 +90,15 @@ std::shared_ptr<const VolumeSource> with_levels_for(const Trace& trace, const Re
     return needs_levels ? with_levels(std::move(source), HOST_BYTES, work.begin("making coarser levels")) : source;
 }
 
+/// Relevance that is computed from the volume; `make` is empty where the trace's own is used.
+struct MadeRelevance {
+    MakeRelevance make{};
+    std::vector<uint8_t> groups{};  ///< that are felt; empty: all
+};
+
 /// Returns a function that computes relevance as the window's mirror does. Sets the unit of a trace without one to the
 /// volume's unit; a radius in voxels is converted to that unit.
-MakeRelevance relevance_of(const ReplayCommandOptions& options, Trace& trace, ReplayOptions& how, LongWork& work)
+MadeRelevance relevance_of(const ReplayCommandOptions& options, Trace& trace, ReplayOptions& how, LongWork& work)
 {
     const UnmeasuredSession opened = open_unmeasured_session(options.volume, options.common.settings);
     const VolumeInfo info = opened.source->info();
@@ -106,10 +112,12 @@ MakeRelevance relevance_of(const ReplayCommandOptions& options, Trace& trace, Re
     const auto document = std::make_shared<const Document>(felt_document(options, opened, info, limits));
     const std::shared_ptr<const VolumeSource> source =
         with_offsets(with_levels_for(trace, how, opened.source, work), document->density);
-    return [source, document, limits, &work](const RegionWish& wish, double threshold, RelevancePatch& patch) {
-        work.stop_if_asked();
-        ui::host_relevance(*source, &document->mask, limits, wish, threshold, patch);
-    };
+    return {.make =
+                [source, document, limits, &work](const RegionWish& wish, double threshold, RelevancePatch& patch) {
+                    work.stop_if_asked();
+                    ui::host_relevance(*source, &document->mask, limits, wish, threshold, patch);
+                },
+            .groups = opened.session.probe.touch.groups};
 }
 
 /// Returns the replay's options except the radius, whose conversion needs the volume's spacing.
@@ -128,9 +136,10 @@ ReplayOptions replay_options(const ReplayCommandOptions& options)
 }
 
 /// Adds the settings in effect in the last tick to the report.
-void add_settings(const ReplayCommandOptions& options, const Trace& trace, const ReplayOptions& how, bool is_recorded,
-                  Json& report)
+void add_settings(const ReplayCommandOptions& options, const Trace& trace, const ReplayOptions& how,
+                  const ReplayResult& result, const MadeRelevance& made, Json& report)
 {
+    const bool is_recorded = result.is_recorded;
     const ForceSettings& last = trace.settings.back().force;
     report["mode"] = spelled(how.mode.value_or(last.mode));
     report["law"] = spelled(how.law.value_or(last.law));
@@ -139,6 +148,8 @@ void add_settings(const ReplayCommandOptions& options, const Trace& trace, const
     report["strength"] = how.strength.value_or(last.strength);
     report["relevance"] = is_recorded ? "recorded" : "made";
     report["latency_ms"] = is_recorded ? Json(nullptr) : Json(1e3 * how.relevance_latency_s);
+    report["assisted_ticks"] = result.assisted_ticks;
+    report["groups"] = is_recorded || made.groups.empty() ? Json(nullptr) : Json(made.groups);
     report["device_model"] = options.model.empty() ? Json(nullptr) : Json(options.model);
     if (!options.model.empty())
         report["hand"] = {{"mass_kg", options.touch.hand_kg},
@@ -170,18 +181,21 @@ void run_replay(const ReplayCommandOptions& options)
              trace.holds_relevance ? "another threshold, radius, choice of groups, latency or device"
                                    : "a trace without relevance",
              " needs it; expected the scan that the trace is of");
-    const MakeRelevance make = options.volume.empty() ? MakeRelevance() : relevance_of(options, trace, how, work);
+    const MadeRelevance made = options.volume.empty() ? MadeRelevance() : relevance_of(options, trace, how, work);
     static_cast<void>(work.begin("replaying " + options.trace));
     std::optional<TickTable> table;
     if (!options.csv.empty()) {
         table.emplace(written_path(options.csv), trace.unit);
         how.note_tick = [&table](const ReplayedTick& tick) { table->add(tick); };
     }
-    const ReplayResult result = replay_trace(trace, how, make);
+    const ReplayResult result = replay_trace(trace, how, made.make);
     if (table) table->commit();
     clear_progress();
     Json report = report_of(result, trace.unit);
-    add_settings(options, trace, how, result.is_recorded, report);
+    add_settings(options, trace, how, result, made, report);
+    if (result.assisted_ticks == 0)
+        say(options.common, options.trace + ": settings: key assistance is false in all ticks, so no force was " +
+                                "computed; expected true in ticks whose forces are wanted");
     report["device_swaps"] = result.swaps;
     if (options.common.json) return print(report);
     say(options.common, sentence(result.ticks, " ticks, ", result.late, " late; largest force ", result.largest_force_n,
@@ -202,14 +216,16 @@ void add_overrides(CLI::App& command, ReplayCommandOptions& options)
     command
         .add_option("--radius", options.radius_voxels,
                     "Radius of the probe, in voxels along x, instead of the trace's; relevance is made again")
-        ->check(CLI::Range(0.01, 1e6));
+        ->check(number_between(0.01, 1e6));
     command
         .add_option("--share", options.share, "Share of the ball above which a surface holds, instead of the trace's")
-        ->check(CLI::Range(0.01, 1.0));
+        ->check(number_between(0.01, 1.0));
     command.add_option("--strength", options.strength, "Factor of the force, 0 to 1, instead of the trace's")
-        ->check(CLI::Range(0.0, 1.0));
-    command.add_option("--stiffness", options.stiffness, "N/m, instead of the trace's")->check(CLI::Range(0.0, 1e6));
-    command.add_option("--damping", options.damping, "N s/m, instead of the trace's")->check(CLI::Range(0.0, 1000.0));
+        ->check(number_between(0.0, 1.0));
+    command.add_option("--stiffness", options.stiffness, "N/m, instead of the trace's")
+        ->check(number_between(0.0, 1e6));
+    command.add_option("--damping", options.damping, "N s/m, instead of the trace's")
+        ->check(number_between(0.0, 1000.0));
     command
         .add_option("--groups", options.groups,
                     "Groups that are felt, 0 for unpainted voxels, instead of the session's "
@@ -220,7 +236,7 @@ void add_overrides(CLI::App& command, ReplayCommandOptions& options)
         .add_option("--latency", options.latency_ms,
                     "Milliseconds from a request for relevance until it is felt; 24 as in the window; relevance is "
                     "made again")
-        ->check(CLI::Range(0.0, 10000.0));
+        ->check(number_between(0.0, 10000.0));
 }
 
 /// The modelled device and its hand.
@@ -234,7 +250,7 @@ void add_model_options(CLI::App& command, ReplayCommandOptions& options)
             ->check(CLI::IsMember({"touch"}));
     command.add_option("--seed", touch.seed, "Of the model's jitter")->capture_default_str();
     const auto add = [&](const char* name, double& value, const char* help, double least, double most) {
-        command.add_option(name, value, help)->capture_default_str()->check(CLI::Range(least, most))->needs(model);
+        command.add_option(name, value, help)->capture_default_str()->check(number_between(least, most))->needs(model);
     };
     add("--hand-mass", touch.hand_kg, "Mass of the modelled hand, kg", 0.0, 10.0);
     add("--hand-stiffness", touch.hand_stiffness, "Stiffness of its grip, N/m; 0: the stylus is let go", 0.0, 1e5);

@@ -237,7 +237,7 @@ void add_haptics_bench(CLI::App& haptics)
     auto options = std::make_shared<BenchCommandOptions>();
     CLI::App* command = haptics.add_subcommand("bench", "What a tick costs, and whether the servo keeps time here");
     command->add_option("--seconds", options->seconds, "How long the servo runs on the clock")
-        ->check(CLI::Range(0.1, 3600.0))
+        ->check(number_between(0.1, 3600.0))
         ->capture_default_str();
     CLI::Option* sweep = command->add_option(
         "--sweep", options->sweep, "Instead: speed against error of the proxy by points and exactly, to this CSV file");

@@ -196,7 +196,7 @@ void add_flaw_options(CLI::App& command, PhantomCommandOptions& options)
     const auto add = [&](const char* name, double PhantomFlaws::*flaw, double least, double most, const char* meaning) {
         const CLI::Option* option = command.add_option(name, options.spec.flaws.*flaw, meaning)
                                         ->group(group)
-                                        ->check(CLI::Range(least, most))
+                                        ->check(number_between(least, most))
                                         ->capture_default_str();
         options.of_flaws.push_back(option);
         options.flaws.emplace_back(option, flaw);

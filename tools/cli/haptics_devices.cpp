@@ -90,7 +90,7 @@ void add_haptics_devices(CLI::App& haptics)
     auto options = std::make_shared<DevicesCommandOptions>();
     CLI::App* command = haptics.add_subcommand("devices", "Lists haptic devices, or records the reports of one");
     command->add_option("--record", options->record, "Writes the raw reports of a HID device: 2988:0304, /dev/hidraw3");
-    command->add_option("--seconds", options->seconds, "Of a recording, at most")->check(CLI::Range(0.1, 900.0));
+    command->add_option("--seconds", options->seconds, "Of a recording, at most")->check(number_between(0.1, 900.0));
     command->add_option("-o,--output", options->output, "File for the reports; it must not exist");
     add_output_options(*command, options->common);
     command->footer("Example:\n  shvr haptics devices --json");
