@@ -99,7 +99,9 @@ inline constexpr PatternMeasure PATTERN_MEASURES[] = {
      "undisturbed spirals near 1; florets at random: no lattice"},
     {"floret_centre_offset", "1", "distance of the lattice's fitted centre from the axis, in head radii", "phantoms 0"},
     {"parastichies_M_rho_R", "1",
-     "visible parastichies at rho R, the smaller number: those along the shortest vectors of the lattice to both sides",
+     "visible parastichies at rho R, the smaller number: those along the shortest vectors of the lattice to both "
+     "sides; "
+     "a reason where less than half of the pairs lie along them",
      "van Iterson 1907; Jean 1994; consecutive Fibonacci or Lucas numbers, or twice Fibonacci numbers"},
     {"parastichies_N_rho_R", "1", "the larger number", "as parastichies_M_rho_R"},
     {"parastichies_share_rho_R", "1",

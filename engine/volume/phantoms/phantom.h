@@ -62,8 +62,9 @@ struct Phantom {
     std::map<std::string, uint8_t> tissues{};  ///< the group of each named tissue
     /// Exact numbers, in voxels, degrees or turns according to their names. A capitulum has `axis_through_voxels` (the
     /// middle of the head, from which heights and rho are measured), `axis_direction`, `head_radius_voxels` (where rho
-    /// is 1), `divergence_degrees`, `jugacy` (florets at one height), `handedness` (1: successive florets turn
-    /// counter-clockwise if the axis points towards the viewer; -1: clockwise) and `florets`.
+    /// is 1; `head_radius` of --metrics, that of the outermost floret, is up to 5 % less), `divergence_degrees`,
+    /// `jugacy` (florets at one height), `handedness` (1: successive florets turn counter-clockwise if the axis points
+    /// towards the viewer; -1: clockwise) and `florets`.
     std::map<std::string, std::vector<double>> facts{};
 };
 

@@ -112,6 +112,23 @@ TEST_CASE("phantoms have the phyllotaxis they were built with, to the left and t
             }
 }
 
+TEST_CASE("a rim of few rows of florets gives a reason where neighbours do not show the families of the lattice")
+{
+    for (const char* species : {"gerbera", "helianthus", "bellis"}) {
+        CAPTURE(species);
+        const auto rows = [&](char stage) {
+            return head_of(make_phantom({.size = Size3(48), .species = species, .stage = std::string(1, stage)}))
+                .measure();
+        };
+        const PatternRows rim = rows('b'), whole = rows('d');
+        CHECK(number(rim, "divergence_angle") == Approx(GOLDEN).epsilon(1e-3));
+        CHECK(!rim.value("parastichies_M_rho_0.9"));
+        CHECK(rim.reason("parastichies_M_rho_0.9").find("% of neighbours lie along") != std::string::npos);
+        CHECK(number(whole, "parastichies_share_rho_0.9") > 0.65);
+        CHECK(number(rows('c'), "parastichies_M_rho_0.9") == number(whole, "parastichies_M_rho_0.9"));
+    }
+}
+
 TEST_CASE("adaxial veins of bellis follow the parastichies, those of gerbera do not")
 {
     std::map<std::string, double> aligned;
