@@ -1,5 +1,5 @@
-// Opaque surfaces: balls and rods that end rays; intersections are exact. Lengths and positions are in isotropic space:
-// physical positions divided by the reference length, the shortest side of a voxel.
+// Opaque surfaces that end rays: balls, rods, and triangles of meshes; intersections are exact. Lengths and positions
+// are in isotropic space: physical positions divided by the reference length, the shortest side of a voxel.
 #ifndef SHVR_SURFACES_H
 #define SHVR_SURFACES_H
 #include "shared.h"
@@ -17,6 +17,19 @@ struct Surface {
     uint number;  ///< tie-breaker: of two surfaces at equal length, the lower number is visible
     vec3 color;   ///< linear light
     uint unused;
+};
+
+/// A triangle of a mesh, seen from both sides. Corners are stored whole: triangles that share one have the same bits
+/// there, so that no ray passes between them. A list holds surfaces or triangles, never both. Stored as four texels.
+struct Triangle {
+    vec3 a;
+    uint number;  ///< tie-breaker, as above
+    vec3 b;
+    uint normal_a;  ///< at corner `a`, octahedral (triangle.glsl); the others likewise
+    vec3 c;
+    uint normal_b;
+    vec3 color;  ///< linear light
+    uint normal_c;
 };
 
 /// A box around surfaces. Nodes are in depth-first order: a node is followed by its first child or, if it has no child,

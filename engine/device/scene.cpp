@@ -146,10 +146,17 @@ Scene::Scene(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const
                     finest_bricks(source_->info()) <= MAX_FINEST_BRICKS),
       occlusion_(memory),
       surfaces_(memory),
+      meshes_(memory),
       tables_(memory)
 {
     load(options_.reserved_bytes);
     options_.in_slices = false;  // if memory runs short, the volume is loaded again, at once
+}
+
+uint64_t Scene::next_number()
+{
+    static uint64_t last = 0;  // of the thread that owns the device
+    return ++last;
 }
 
 /// `reserved_bytes`: device memory for paint, offsets and surfaces.

@@ -68,6 +68,8 @@ public:
     /// Fails if the sizes alone show that a scene of this source is impossible; reads no voxels.
     static void check_sizes(gpu::Memory& memory, const VolumeSource& source, const Options& options);
 
+    /// A number that no other scene of this process has.
+    uint64_t number() const { return number_; }
     const VolumeInfo& info() const { return volume_->info(); }
     const VolumeStatistics& statistics() const { return statistics_; }
     const gpu::DeviceTraits& traits() const { return memory_.device().traits(); }
@@ -80,7 +82,8 @@ public:
     const DeviceMask& mask() const { return *mask_; }
     Occlusion& occlusion() { return occlusion_; }
     SurfaceScene& surfaces() { return surfaces_; }
-    bool has_surfaces() const { return !surfaces_.empty(); }
+    MeshScene& meshes() { return meshes_; }
+    bool has_surfaces() const { return !surfaces_.empty() || !meshes_.empty(); }
     LookTables& tables() { return tables_; }
 
     // ---- Changes
@@ -113,6 +116,8 @@ public:
     /// Fails as `surface_tree` and gpu::Memory::create do, and then keeps the earlier surfaces. If only colours or
     /// sizes differ from the surfaces shown, only colours and sizes are written.
     void show_surfaces(std::vector<SurfaceLook> surfaces, const TraceGraph& trace, const Groups& groups);
+    /// Sets the triangles of meshes that end rays. Fails as gpu::Memory::create does, and then keeps the earlier ones.
+    void show_meshes(MeshTree tree) { meshes_.set(std::move(tree)); }
     /// Shows the trace after these changes. The cost is proportional to the number of changes, except if thousands of
     /// nodes change at once or a group's radius changes.
     void show_trace(const TraceGraph& trace, std::span<const Change> changes);
@@ -176,6 +181,9 @@ private:
     bool voxels_are_there();
     void renew_density();
 
+    static uint64_t next_number();
+
+    const uint64_t number_ = next_number();
     gpu::Executor& executor_;
     gpu::Memory& memory_;
     std::shared_ptr<const VolumeSource> source_;
@@ -190,6 +198,7 @@ private:
     Occlusion occlusion_;
     bool occlusion_has_no_room_ = false;
     SurfaceScene surfaces_;
+    MeshScene meshes_;
     /// The surfaces shown in addition to the trace, and the trace's colours; null while no trace is shown.
     struct TraceLook {
         std::vector<SurfaceLook> surfaces;

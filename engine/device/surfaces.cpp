@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 namespace shvr {
@@ -18,6 +19,8 @@ constexpr uint32_t SHORT_GAP = 16;
 template <class Value>
 constexpr uint32_t TEXELS = sizeof(Value) / sizeof(glm::uvec4);
 static_assert(TEXELS<gpu::Surface> == gpu::SURFACE_TEXELS && sizeof(gpu::Surface) == 64);
+static_assert(TEXELS<gpu::Triangle> == gpu::SURFACE_TEXELS && sizeof(gpu::Triangle) == 64);
+static_assert(MAX_TRIANGLES_SHOWN <= 1u << gpu::SURFACE_BLOCK && MAX_TRIANGLES_SHOWN / gpu::SURFACES_IN_ROW <= 4096);
 static_assert(TEXELS<gpu::SurfaceNode> == gpu::SURFACE_NODE_TEXELS && sizeof(gpu::SurfaceNode) == 48);
 static_assert(MAX_SURFACES + SurfaceForest::MAX_SURFACES_ADDED <= 1u << gpu::SURFACE_BLOCK);
 
@@ -79,6 +82,43 @@ double largest(const glm::dvec3& v)
     return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
+/// The largest absolute coordinate, in reference lengths.
+double largest(std::span<const gpu::SurfaceNode> nodes)
+{
+    double most = 0.0;
+    for (size_t root = 0; root < nodes.size(); root = nodes[root].skip)
+        most = std::max({most, largest(nodes[root].lower), largest(nodes[root].upper)});
+    return most;
+}
+
+gpu::SurfaceParams surface_params(const RayPlanes& planes, const glm::uvec2& pixels, const VolumeInfo& volume,
+                                  size_t nodes, double largest_coordinate)
+{
+    const glm::dvec3 scale = volume.spacing / std::min({volume.spacing.x, volume.spacing.y, volume.spacing.z});
+    const auto between = [&](const glm::dvec3& near, const glm::dvec3& far) {
+        return scale * (near + planes.middle * (far - near));
+    };
+    const glm::dvec3 corner = between(planes.near_corner, planes.far_corner);
+    const glm::dvec3 dx = between(planes.near_dx, planes.far_dx), dy = between(planes.near_dy, planes.far_dy);
+    const glm::dvec3 origin = corner + 0.5 * (double(pixels.x) * dx + double(pixels.y) * dy);
+    const glm::dvec3 along = scale * (planes.far_corner - planes.near_corner);
+    gpu::SurfaceParams params{};
+    params.origin = origin;
+    params.origin_rest = origin - glm::dvec3(params.origin);
+    params.middle_corner = corner - origin;
+    params.middle_dx = dx;
+    params.middle_dy = dy;
+    params.along_corner = along;
+    params.along_dx = scale * (planes.far_dx - planes.near_dx);
+    params.along_dy = scale * (planes.far_dy - planes.near_dy);
+    params.begin = float(std::max(planes.begin, -FAR));
+    params.middle = float(planes.middle);
+    params.end = float(std::min(planes.end, FAR));
+    params.slack = float(ROUNDING * (largest_coordinate + largest(origin) + largest(corner - origin)));
+    params.node_count = uint32_t(nodes);
+    return params;
+}
+
 }  // namespace
 
 void SurfaceScene::set(SurfaceForest forest)
@@ -123,41 +163,46 @@ std::optional<SurfaceList> SurfaceScene::upload(FrameGraph& graph)
                        send(graph, "surface list", forest_.list(), std::move(written.list), list)};
 }
 
-/// The largest absolute coordinate, in reference lengths.
-double SurfaceScene::largest() const
-{
-    double most = 0.0;
-    for (size_t root = 0; root < forest_.nodes().size(); root = forest_.nodes()[root].skip)
-        most = std::max({most, shvr::largest(forest_.nodes()[root].lower), shvr::largest(forest_.nodes()[root].upper)});
-    return most;
-}
-
 gpu::SurfaceParams SurfaceScene::params(const RayPlanes& planes, const glm::uvec2& pixels,
                                         const VolumeInfo& volume) const
 {
-    const glm::dvec3 scale = volume.spacing / std::min({volume.spacing.x, volume.spacing.y, volume.spacing.z});
-    const auto between = [&](const glm::dvec3& near, const glm::dvec3& far) {
-        return scale * (near + planes.middle * (far - near));
-    };
-    const glm::dvec3 corner = between(planes.near_corner, planes.far_corner);
-    const glm::dvec3 dx = between(planes.near_dx, planes.far_dx), dy = between(planes.near_dy, planes.far_dy);
-    const glm::dvec3 origin = corner + 0.5 * (double(pixels.x) * dx + double(pixels.y) * dy);
-    const glm::dvec3 along = scale * (planes.far_corner - planes.near_corner);
-    gpu::SurfaceParams params{};
-    params.origin = origin;
-    params.origin_rest = origin - glm::dvec3(params.origin);
-    params.middle_corner = corner - origin;
-    params.middle_dx = dx;
-    params.middle_dy = dy;
-    params.along_corner = along;
-    params.along_dx = scale * (planes.far_dx - planes.near_dx);
-    params.along_dy = scale * (planes.far_dy - planes.near_dy);
-    params.begin = float(std::max(planes.begin, -FAR));
-    params.middle = float(planes.middle);
-    params.end = float(std::min(planes.end, FAR));
-    params.slack = float(ROUNDING * (largest() + shvr::largest(origin) + shvr::largest(corner - origin)));
-    params.node_count = uint32_t(forest_.nodes().size());
-    return params;
+    return surface_params(planes, pixels, volume, forest_.nodes().size(), largest(forest_.nodes()));
+}
+
+void MeshScene::set(MeshTree tree)
+{
+    gpu::Storage nodes, list;
+    if (!tree.nodes.empty()) {
+        const auto create = [&](const char* name, const ResourceDesc& desc) {
+            return memory_.create(name, desc, gpu::Placement::device, "the triangles of meshes");
+        };
+        nodes = create("mesh nodes", desc_of<gpu::SurfaceNode>(tree.nodes.size()));
+        list = create("mesh list", desc_of<gpu::Triangle>(tree.list.size()));
+    }
+    nodes_ = std::move(nodes);
+    list_ = std::move(list);
+    node_count_ = tree.nodes.size();
+    largest_ = largest(tree.nodes);
+    unsent_ = std::move(tree);
+}
+
+std::optional<SurfaceList> MeshScene::upload(FrameGraph& graph)
+{
+    if (empty()) return std::nullopt;
+    Resource nodes = graph.import("mesh nodes", nodes_.import()), list = graph.import("mesh list", list_.import());
+    if (!unsent_.nodes.empty()) {
+        nodes = send_all(graph, "mesh nodes", unsent_.nodes, nodes);
+        list = send_all(graph, "mesh list", unsent_.list, list);
+        // The graph holds copies of them, which are kept until it has been submitted, or dropped without that.
+        const auto sent = std::make_shared<MeshTree>(std::exchange(unsent_, {}));
+        graph.unless_submitted([this, sent] { unsent_ = std::move(*sent); });
+    }
+    return SurfaceList{nodes, list, true};
+}
+
+gpu::SurfaceParams MeshScene::params(const RayPlanes& planes, const glm::uvec2& pixels, const VolumeInfo& volume) const
+{
+    return surface_params(planes, pixels, volume, node_count_, largest_);
 }
 
 }  // namespace shvr

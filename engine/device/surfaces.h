@@ -6,7 +6,8 @@
 
 #include "engine/gpu/memory.h"
 #include "engine/look/camera.h"
-#include "engine/look/surface_forest.h"
+#include "engine/look/surfaces/mesh_tree.h"
+#include "engine/look/surfaces/surface_forest.h"
 #include "engine/passes/surfaces.h"
 
 namespace shvr {
@@ -30,11 +31,29 @@ public:
     gpu::SurfaceParams params(const RayPlanes& planes, const glm::uvec2& pixels, const VolumeInfo& volume) const;
 
 private:
-    double largest() const;
     gpu::Memory& memory_;
     SurfaceForest forest_;
     gpu::Storage nodes_, list_;
     bool is_sent_ = false;  ///< whether the device is up to date, except for values written by `replace`
+};
+
+/// The triangles of a scene's meshes, likewise. They change as a whole.
+class MeshScene {
+public:
+    explicit MeshScene(gpu::Memory& memory) : memory_(memory) {}
+    /// Replaces all triangles. If the budget cannot hold them, fails and keeps the old ones. The host keeps them only
+    /// until they are on the device.
+    void set(MeshTree tree);
+    bool empty() const { return node_count_ == 0; }
+    std::optional<SurfaceList> upload(FrameGraph& graph);
+    gpu::SurfaceParams params(const RayPlanes& planes, const glm::uvec2& pixels, const VolumeInfo& volume) const;
+
+private:
+    gpu::Memory& memory_;
+    MeshTree unsent_;
+    size_t node_count_ = 0;
+    double largest_ = 0.0;  ///< absolute coordinate, in reference lengths
+    gpu::Storage nodes_, list_;
 };
 
 }  // namespace shvr

@@ -9,7 +9,7 @@
 #include "engine/annotation/trace/tracing.h"
 #include "engine/annotation/work/history.h"
 #include "engine/look/groups.h"
-#include "engine/look/surface_tree.h"
+#include "engine/look/surfaces/surface_tree.h"
 
 namespace shvr {
 

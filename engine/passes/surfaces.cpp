@@ -18,6 +18,7 @@ Resource tiles_block(FrameGraph& graph, const SurfacesInput& input, Resource til
     pass.block("surface_params", std::span(&input.scene, 1));
     pass.read("surface_nodes", input.listed->nodes);
     pass.read("surface_list", input.listed->list);
+    pass.constant("TRIANGLES", input.listed->triangles);
     pixel_groups(pass, gpu::surface_tiles_of(pixels), {.layers = input.pixel_groups.layers});
     return input.scene.first_node > 0 ? pass.modify("surface_tiles", tiles) : pass.write("surface_tiles", tiles);
 }
@@ -37,6 +38,7 @@ Resource surfaces_block(FrameGraph& graph, const SurfacesInput& input, Resource 
     pass.constant("SHININESS_SQUARINGS", shininess_squarings(input.params.shininess));
     pass.constant("DISTANCE_BLEND", input.params.blend_size > 0.0f);
     pass.constant("PROBE", input.probe);
+    pass.constant("TRIANGLES", input.listed && input.listed->triangles);
     pixel_groups(pass, pixels, input.pixel_groups);
     return input.scene.first_node > 0 ? pass.modify("surfaces", target) : pass.write("surfaces", target);
 }
@@ -63,6 +65,15 @@ Resource surfaces(FrameGraph& graph, const SurfacesInput& input)
     Resource target = graph.create("surfaces", picture_desc(Format::rgba32_float, pixels));
     for (const SurfacesInput& block : blocks) target = surfaces_block(graph, block, target, tiles);
     return target;
+}
+
+Resource nearer(FrameGraph& graph, Resource other, Resource surfaces, const glm::uvec2& size)
+{
+    Pass pass = graph.compute("nearer");
+    pass.read("other", other);
+    pass.push(gpu::NearerParams{.size = size});
+    pass.dispatch({size.x, size.y, 1});
+    return pass.modify("surfaces", surfaces);
 }
 
 }  // namespace shvr

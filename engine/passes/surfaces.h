@@ -5,6 +5,7 @@
 
 #include "engine/graph/frame_graph.h"
 #include "engine/passes/pixel_groups.h"
+#include "shaders/nearer.h"
 #include "shaders/raycast.h"
 #include "shaders/surfaces.h"
 
@@ -12,8 +13,9 @@ namespace shvr {
 
 /// Surfaces on the device, and the hierarchy of boxes around them.
 struct SurfaceList {
-    Resource nodes;  ///< gpu::SurfaceNode, params.node_count nodes in depth-first order
-    Resource list;   ///< gpu::Surface; an rgba32_uint image with rows of gpu::SURFACES_IN_ROW, like `nodes`
+    Resource nodes;          ///< gpu::SurfaceNode, params.node_count nodes in depth-first order
+    Resource list;           ///< gpu::Surface; an rgba32_uint image with rows of gpu::SURFACES_IN_ROW, like `nodes`
+    bool triangles = false;  ///< gpu::Triangle instead
 };
 
 /// Maximum number of nodes that one dispatch may visit: some devices abort a thread's loops after 65535 iterations in
@@ -37,5 +39,9 @@ inline constexpr uint64_t SURFACE_TILE_BYTES = sizeof(uint32_t) * gpu::SURFACE_T
 /// Returns an image of the part's size. A texel has the lit colour, in linear light, and the distance along the pixel's
 /// ray at which a surface ends the ray, or gpu::NO_SURFACE. Valid in this frame only.
 Resource surfaces(FrameGraph& graph, const SurfacesInput& input);
+
+/// Keeps, of two such images of `size`, the nearer surface at each pixel (shaders/picture/nearer.comp). Changes
+/// `surfaces`, and returns its new version.
+Resource nearer(FrameGraph& graph, Resource other, Resource surfaces, const glm::uvec2& size);
 
 }  // namespace shvr

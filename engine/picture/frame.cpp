@@ -59,7 +59,7 @@ PageView page_view(const Look& look, const Shot& shot, const PicturePart& part)
 struct Prepared {
     VolumeBinding volume;
     RaycastInput input;  ///< complete except for the surfaces
-    std::optional<SurfaceList> listed;
+    std::optional<SurfaceList> listed, meshes;
 };
 
 /// Adds the passes that frame.h lists first: volume, occlusion and tables.
@@ -77,7 +77,10 @@ Prepared prepare(FrameGraph& graph, Scene& scene, const Look& look, const Shot& 
     }
     input.table = scene.tables().upload_function(graph, look, scene.volume().window(), step_voxels);
     if (input.mask) input.groups = scene.tables().upload_groups(graph, look, step_voxels);
-    if (!shot.is_slice && look.shows_meshes) prepared.listed = scene.surfaces().upload(graph);
+    if (!shot.is_slice && look.shows_meshes) {
+        prepared.listed = scene.surfaces().upload(graph);
+        prepared.meshes = scene.meshes().upload(graph);
+    }
     input.params = raycast_params(look, shot.camera, scene, prepared.volume, part, step_voxels);
     input.shaded = look.light.shaded && !shot.is_slice;
     input.analytic_gradient = look.render.gradient == Gradient::analytic;
@@ -91,19 +94,27 @@ Prepared prepare(FrameGraph& graph, Scene& scene, const Look& look, const Shot& 
     return prepared;
 }
 
-/// Draws the surfaces at which the rays of a part end, including the probe's ball; null if there are none.
+/// Draws the surfaces at which the rays of a part end: meshes, trace and the probe's ball; null if there are none.
 std::optional<Resource> draw_surfaces(FrameGraph& graph, Scene& scene, const Prepared& prepared,
                                       const RaycastInput& input, const RayPlanes& planes, const PicturePart& part)
 {
     const bool has_ball = part.probe && part.probe->ball_share > 0.0;
-    if (input.slice || (!prepared.listed && !has_ball)) return std::nullopt;
+    if (input.slice) return std::nullopt;
+    std::optional<Resource> meshes;
+    if (prepared.meshes)
+        meshes = surfaces(graph, {.params = input.params,
+                                  .scene = scene.meshes().params(planes, part.pixels, scene.info()),
+                                  .listed = prepared.meshes,
+                                  .pixel_groups = input.pixel_groups});
+    if (!prepared.listed && !has_ball) return meshes;
     SurfacesInput wanted{.params = input.params,
                          .scene = scene.surfaces().params(planes, part.pixels, scene.info()),
                          .listed = prepared.listed,
                          .probe = has_ball,
                          .pixel_groups = input.pixel_groups};
     if (has_ball) set_ball(wanted.scene, *part.probe, scene.info());
-    return surfaces(graph, wanted);
+    const Resource drawn = surfaces(graph, wanted);
+    return meshes ? nearer(graph, *meshes, drawn, part.end - part.begin) : drawn;
 }
 
 /// Returns whether objects behind the probe's ball are visible through it. If so, two pictures are drawn and mixed.

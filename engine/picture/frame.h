@@ -7,6 +7,7 @@
 //   occlusion  [start occlusion -> reset occlusion values, clear occlusion cells]
 //   tables     [upload transfer function] [upload groups] [upload surface nodes, upload surface list]
 //   surfaces   [surface_tiles] [surfaces]                              (a trace, the probe's ball)
+//              the same before it for meshes, then [nearer]
 //   preview    [preview]                                               (what a brush would change)
 //   rays       raycast, one thread per pixel
 //   preview    [preview_over]

@@ -16,6 +16,8 @@ layout(binding = 0, scalar) readonly buffer Params { RaycastParams data; } param
 layout(binding = 1, scalar) readonly buffer Scene { SurfaceParams data; } surface_params;
 layout(binding = 5, r32ui) uniform uimage2D surface_tiles;
 
+layout(constant_id = 0) const uint TRIANGLES = 0u;  // 1: the list holds triangles
+
 const uint GROUP_WIDTH = 8u;   // tiles
 #include "../library/rays.glsl"
 #include "../library/surface_list.glsl"
@@ -49,29 +51,53 @@ bool box_may_be_met(const Side sides[4], vec3 middle, vec3 half_size, float slac
     return may;
 }
 
-bool surface_may_be_met(const Side sides[4], const Surface surface, vec3 from, float slack)
+// A surface as two balls, or a triangle: a corner, the ways from it to two others, and the radii at the first two.
+struct Extent {
+    vec3 from, along, other;
+    float radius_from, radius_to;
+};
+
+Extent extent_at(const SurfaceParams scene, uint index)
+{
+    if (TRIANGLES != 0u) {
+        const Triangle triangle = triangle_at(index);
+        return Extent(triangle.a - scene.origin, triangle.b - triangle.a, triangle.c - triangle.a, 0.0, 0.0);
+    }
+    const Surface surface = surface_at(index);
+    return Extent(surface.from - scene.origin, surface.along, vec3(0.0), surface.radius_from, surface.radius_to);
+}
+
+bool surface_may_be_met(const Side sides[4], const Extent surface, float slack)
 {
     bool may = true;
     for (uint i = 0u; i < 4u; ++i) {
-        const float first = dot(sides[i].normal, from - sides[i].point);
-        const float other = first + dot(sides[i].normal, surface.along);
-        may = may && max(first + surface.radius_from, other + surface.radius_to) >= -slack;
+        const float first = dot(sides[i].normal, surface.from - sides[i].point);
+        const float second = first + dot(sides[i].normal, surface.along);
+        float inmost = max(first + surface.radius_from, second + surface.radius_to);
+        if (TRIANGLES != 0u) inmost = max(inmost, first + dot(sides[i].normal, surface.other));
+        may = may && inmost >= -slack;
     }
     return may;
 }
 
 // Returns the bits of those blocks of the tile whose rays may meet a surface. `borders`: the first is between left and
 // right blocks, the others are between rows of blocks.
-uint blocks_of(const Side borders[4], const Surface surface, vec3 from, float slack)
+uint blocks_of(const Side borders[4], const Extent surface, float slack)
 {
-    vec4 first, along;
+    vec4 first, along, third;
     for (uint i = 0u; i < 4u; ++i) {
-        first[i] = dot(borders[i].normal, from - borders[i].point);
+        first[i] = dot(borders[i].normal, surface.from - borders[i].point);
         along[i] = dot(borders[i].normal, surface.along);
+        third[i] = first[i] + (TRIANGLES != 0u ? dot(borders[i].normal, surface.other) : 0.0);
     }
-    const vec4 other = first + along;
-    const bvec4 before = lessThanEqual(min(first - surface.radius_from, other - surface.radius_to), vec4(slack));
-    const bvec4 beyond = greaterThanEqual(max(first + surface.radius_from, other + surface.radius_to), vec4(-slack));
+    const vec4 second = first + along;
+    vec4 least = min(first - surface.radius_from, second - surface.radius_to);
+    vec4 most = max(first + surface.radius_from, second + surface.radius_to);
+    if (TRIANGLES != 0u) {
+        least = min(least, third);
+        most = max(most, third);
+    }
+    const bvec4 before = lessThanEqual(least, vec4(slack)), beyond = greaterThanEqual(most, vec4(-slack));
     const uint row = uint(before.x) | uint(beyond.x) << 1u;
     return (before.y ? row : 0u) | (beyond.y && before.z ? row << 2u : 0u) |
            (beyond.z && before.w ? row << 4u : 0u) | (beyond.w ? row << 6u : 0u);
@@ -109,11 +135,10 @@ void main()
         const uint end = is_met ? box.end : box.begin;
         uint i = box.begin;
         if (i < end) do {
-            const Surface surface = surface_at(i);
-            const vec3 from = surface.from - scene.origin;
-            const bool may_be_met = surface_may_be_met(sides, surface, from, slack);
+            const Extent surface = extent_at(scene, i);
+            const bool may_be_met = surface_may_be_met(sides, surface, slack);
             if (may_be_met && count < SURFACES_IN_TILE) {
-                const uint blocks = blocks_of(borders, surface, from, slack);
+                const uint blocks = blocks_of(borders, surface, slack);
                 imageStore(surface_tiles, ivec2(surface_tile_texel(tile, 1u + count)),
                            uvec4(i | blocks << SURFACE_BLOCK));
             }

@@ -11,7 +11,8 @@
 // whether the ray begins inside. Listed surfaces are tested in the last block.
 //
 // Surfaces are solid: if a ray starts inside one (the near plane cuts the surface, or the eye is in it), the ray hits
-// it at its start, facing the eye. The volume's cutting planes do not cut surfaces.
+// it at its start, facing the eye. Triangles have no inside: those before the start are not met. The volume's cutting
+// planes do not cut surfaces.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -23,6 +24,7 @@ layout(constant_id = 0) const uint GROUP_WIDTH = 8u;
 layout(constant_id = 1) const uint SHININESS_SQUARINGS = NOT_A_POWER_OF_TWO;
 layout(constant_id = 2) const uint DISTANCE_BLEND = 0u;
 layout(constant_id = 3) const uint PROBE = 0u;
+layout(constant_id = 4) const uint TRIANGLES = 0u;  // 1: the list holds triangles, which have no inside
 
 layout(binding = 0, scalar) readonly buffer Params { RaycastParams data; } params_block;
 layout(binding = 1, scalar) readonly buffer Scene { SurfaceParams data; } surface_params;
@@ -36,6 +38,9 @@ layout(binding = 5, r32ui) uniform readonly uimage2D surface_tiles;
 #include "../library/rays.glsl"
 #include "../library/round_cone.glsl"
 #include "../library/shade.glsl"
+#ifdef LISTED
+#include "../library/triangle.glsl"
+#endif
 
 struct Hit {
     float at;       // length along the line
@@ -76,6 +81,12 @@ vec3 from_origin(const SurfaceParams scene, const Surface surface)
 
 void meet(const SurfaceParams scene, const Line line, float begin, uint index, inout Hit hit)
 {
+    if (TRIANGLES != 0u) {
+        const Triangle triangle = triangle_at(index);
+        const float at = met_at(scene, line, triangle).at;
+        consider(at < begin ? NOTHING : vec2(at), begin, triangle.number, index, hit);
+        return;
+    }
     const Surface surface = surface_at(index);
     const vec3 from = from_origin(scene, surface) - line.origin;
     consider(surface_range(surface, from, line.direction), begin, surface.number, index, hit);
@@ -123,7 +134,9 @@ uint next_in_block(uvec2 tile, uint block, uint next, uint count)
 Hit unpacked_hit(const vec4 packed)
 {
     const uint index = uint(packed.y) * INDEX_PART + uint(packed.z);
-    return Hit(packed.x, packed.w != 0.0, index == PROBE_INDEX ? PROBE_INDEX : surface_at(index).number, index);
+    uint number = PROBE_INDEX;
+    if (index != PROBE_INDEX) number = TRIANGLES != 0u ? triangle_at(index).number : surface_at(index).number;
+    return Hit(packed.x, packed.w != 0.0, number, index);
 }
 #endif
 
@@ -149,7 +162,11 @@ vec3 look_of(const RaycastParams params, const SurfaceParams scene, const Line l
     vec3 normal = at - scene.probe_center;
     vec3 color = scene.probe_color;
 #ifdef LISTED
-    if (hit.index != PROBE_INDEX) {
+    if (hit.index != PROBE_INDEX && TRIANGLES != 0u) {
+        const Triangle triangle = triangle_at(hit.index);
+        normal = triangle_normal(triangle, line, met_at(scene, line, triangle).share);
+        color = triangle.color;
+    } else if (hit.index != PROBE_INDEX) {
         const Surface surface = surface_at(hit.index);
         // Computed from the line's point nearest to the surface, as in surface_range.
         const vec3 from = from_origin(scene, surface) - line.origin;

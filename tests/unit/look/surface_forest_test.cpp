@@ -1,6 +1,6 @@
 // A set of surfaces with a few changes at a time.
 
-#include "engine/look/surface_forest.h"
+#include "engine/look/surfaces/surface_forest.h"
 
 #include <algorithm>
 #include <cstring>

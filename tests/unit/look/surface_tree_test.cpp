@@ -1,6 +1,6 @@
 // The hierarchy of boxes around opaque surfaces, before a device sees it.
 
-#include "engine/look/surface_tree.h"
+#include "engine/look/surfaces/surface_tree.h"
 
 #include <algorithm>
 #include <cmath>

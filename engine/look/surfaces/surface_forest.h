@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/look/surface_tree.h"
+#include "engine/look/surfaces/surface_tree.h"
 
 namespace shvr {
 

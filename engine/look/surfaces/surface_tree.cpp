@@ -1,13 +1,12 @@
-#include "engine/look/surface_tree.h"
+#include "engine/look/surfaces/surface_tree.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numeric>
 #include <string>
 
 #include "engine/base/error.h"
 #include "engine/base/finite.h"
+#include "engine/look/surfaces/box_tree.h"
 #include "engine/volume/grid.h"
 
 namespace shvr {
@@ -17,20 +16,6 @@ namespace {
 constexpr double NEAREST = -double(MAX_SIDE), FARTHEST = 2.0 * double(MAX_SIDE), MAX_RADIUS = double(MAX_SIDE);
 /// Tolerance, as a share of the radii's difference, for drawing a rod as a ball if one of its balls contains the other.
 constexpr double CONTAINED = 1e-5;
-
-struct Box {
-    glm::dvec3 lower{INFINITY}, upper{-INFINITY};
-    void add(const glm::dvec3& low, const glm::dvec3& high)
-    {
-        lower = glm::min(lower, low), upper = glm::max(upper, high);
-    }
-    void add(const Box& box) { add(box.lower, box.upper); }
-    double half_area() const
-    {
-        const glm::dvec3 d = glm::max(upper - lower, 0.0);
-        return d.x * d.y + d.y * d.z + d.z * d.x;
-    }
-};
 
 bool is_within(const glm::dvec3& v)
 {
@@ -84,122 +69,22 @@ gpu::Surface on_device(const SurfaceLook& look, uint64_t key, double reference_l
     return surface;
 }
 
-Box box_of(const gpu::Surface& surface)
+SurfaceBox box_of(const gpu::Surface& surface)
 {
     const glm::dvec3 from = glm::dvec3(surface.from) + glm::dvec3(surface.from_rest);
     const glm::dvec3 to = from + glm::dvec3(surface.along);
-    Box box;
+    SurfaceBox box;
     box.add(from - double(surface.radius_from), from + double(surface.radius_from));
     box.add(to - double(surface.radius_to), to + double(surface.radius_to));
     return box;
 }
 
-glm::vec3 rounded(const glm::dvec3& v, float towards)
-{
-    const glm::vec3 f(v);
-    return {std::nextafter(f.x, towards), std::nextafter(f.y, towards), std::nextafter(f.z, towards)};
-}
+}  // namespace
 
 double reference_length_of(const VolumeInfo& volume)
 {
     return std::min({volume.spacing.x, volume.spacing.y, volume.spacing.z});
 }
-
-struct Item {
-    Box box;
-    glm::dvec3 middle{0.0};
-    uint32_t surface = 0;
-};
-
-/// Splits by the surface area heuristic (MacDonald and Booth 1990), evaluated over bins (Wald 2007).
-class Builder {
-public:
-    Builder(std::vector<Item>& items, size_t max_in_leaf, std::vector<gpu::SurfaceNode>& nodes)
-        : items_(items), max_in_leaf_(max_in_leaf), nodes_(nodes)
-    {}
-
-    /// Adds items begin ... end. Both sides of a split get at least a sixteenth of the items, which bounds the depth.
-    void add(size_t begin, size_t end)
-    {
-        Box box;
-        for (size_t i = begin; i < end; ++i) box.add(items_[i].box);
-        const size_t node = nodes_.size();
-        nodes_.push_back({.lower = rounded(box.lower, -INFINITY), .upper = rounded(box.upper, INFINITY)});
-        nodes_[node].begin = nodes_[node].end = uint32_t(begin);
-        if (end - begin <= max_in_leaf_) {
-            nodes_[node].end = uint32_t(end);
-        } else {
-            const size_t middle = split(begin, end);
-            add(begin, middle);
-            add(middle, end);
-        }
-        nodes_[node].skip = uint32_t(nodes_.size());
-    }
-
-private:
-    static constexpr int BINS = 16;
-
-    size_t split(size_t begin, size_t end)
-    {
-        Box middles;
-        for (size_t i = begin; i < end; ++i) middles.add(items_[i].middle, items_[i].middle);
-        const glm::dvec3 extent = middles.upper - middles.lower;
-        const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
-        const auto bin_of = [&](const Item& item) {
-            return std::min(int(BINS * (item.middle[axis] - middles.lower[axis]) / extent[axis]), BINS - 1);
-        };
-        if (extent[axis] > 0.0) {
-            const auto first = items_.begin() + ptrdiff_t(begin), last = items_.begin() + ptrdiff_t(end);
-            const int border = best_border(begin, end, bin_of);
-            const auto middle = std::partition(first, last, [&](const Item& item) { return bin_of(item) < border; });
-            const size_t at = size_t(middle - items_.begin());
-            if (std::min(at - begin, end - at) * BINS >= end - begin) return at;
-        }
-        const size_t half = begin + (end - begin) / 2;
-        std::nth_element(items_.begin() + ptrdiff_t(begin), items_.begin() + ptrdiff_t(half),
-                         items_.begin() + ptrdiff_t(end), [axis](const Item& a, const Item& b) {
-                             return a.middle[axis] != b.middle[axis] ? a.middle[axis] < b.middle[axis]
-                                                                     : a.surface < b.surface;
-                         });
-        return half;
-    }
-
-    /// The first bin of the second half.
-    template <class BinOf>
-    int best_border(size_t begin, size_t end, const BinOf& bin_of) const
-    {
-        std::array<Box, BINS> boxes;
-        std::array<size_t, BINS> counts{};
-        for (size_t i = begin; i < end; ++i) {
-            const auto bin = size_t(bin_of(items_[i]));
-            boxes[bin].add(items_[i].box);
-            ++counts[bin];
-        }
-        std::array<double, BINS> below{};  // cost of the items below each border
-        Box box;
-        size_t count = 0;
-        for (size_t bin = 0; bin + 1 < BINS; ++bin) {
-            box.add(boxes[bin]);
-            below[bin + 1] = box.half_area() * double(count += counts[bin]);
-        }
-        box = Box();
-        count = 0;
-        int best = BINS / 2;
-        double best_cost = INFINITY;
-        for (size_t border = BINS - 1; border > 0; --border) {
-            box.add(boxes[border]);
-            const double cost = below[border] + box.half_area() * double(count += counts[border]);
-            if (cost < best_cost) best_cost = cost, best = int(border);
-        }
-        return best;
-    }
-
-    std::vector<Item>& items_;
-    size_t max_in_leaf_;
-    std::vector<gpu::SurfaceNode>& nodes_;
-};
-
-}  // namespace
 
 std::vector<KeyedSurface> keyed(std::span<const SurfaceLook> surfaces)
 {
@@ -222,20 +107,20 @@ SurfaceTree surface_tree(std::span<const KeyedSurface> surfaces, const VolumeInf
     if (surfaces.size() > MAX_SURFACES)
         fail(surfaces.size(), " surfaces are to be drawn; expected at most ", MAX_SURFACES);
     std::vector<gpu::Surface> all;
-    std::vector<Item> items;
+    std::vector<BoxedSurface> items;
     all.reserve(surfaces.size());
     items.reserve(surfaces.size());
     for (size_t i = 0; i < surfaces.size(); ++i) {
         all.push_back(surface_on_device(surfaces[i], volume));
-        const Box box = box_of(all.back());
+        const SurfaceBox box = box_of(all.back());
         items.push_back({box, 0.5 * (box.lower + box.upper), uint32_t(i)});
     }
     SurfaceTree tree;
     if (items.empty()) return tree;
-    Builder(items, std::max<size_t>(max_in_leaf, 1), tree.nodes).add(0, items.size());
+    tree.nodes = box_tree(items, max_in_leaf);
     tree.list.reserve(all.size());
     tree.keys.reserve(all.size());
-    for (const Item& item : items) {
+    for (const BoxedSurface& item : items) {
         tree.list.push_back(all[item.surface]);
         tree.keys.push_back(surfaces[item.surface].key);
     }
@@ -253,10 +138,10 @@ std::vector<uint32_t> refit(std::span<gpu::SurfaceNode> nodes, std::span<const g
             upper = glm::max(upper, nodes[child].upper);
         }
         if (parent.begin < parent.end) {
-            Box box;
+            SurfaceBox box;
             for (uint32_t i = parent.begin; i < parent.end; ++i) box.add(box_of(list[i]));
-            lower = rounded(box.lower, -INFINITY);
-            upper = rounded(box.upper, INFINITY);
+            lower = rounded_down(box.lower);
+            upper = rounded_up(box.upper);
         }
         // A leaf whose surfaces were all removed keeps its box.
         if (lower.x > upper.x || (lower == parent.lower && upper == parent.upper)) continue;

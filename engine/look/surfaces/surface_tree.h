@@ -51,6 +51,9 @@ struct SurfaceTree {
 SurfaceTree surface_tree(std::span<const KeyedSurface> surfaces, const VolumeInfo& volume,
                          size_t max_in_leaf = gpu::SURFACES_IN_LEAF);
 
+/// The shortest side of a voxel: lengths on the device are multiples of it.
+double reference_length_of(const VolumeInfo& volume);
+
 /// Encodes one surface like the elements of `list`. Fails under the same conditions as `surface_tree`.
 gpu::Surface surface_on_device(const KeyedSurface& surface, const VolumeInfo& volume);
 

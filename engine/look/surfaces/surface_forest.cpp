@@ -1,4 +1,4 @@
-#include "engine/look/surface_forest.h"
+#include "engine/look/surfaces/surface_forest.h"
 
 #include <algorithm>
 
