@@ -33,6 +33,7 @@ MAY_INCLUDE = {
     "engine/formats/slices": "engine/base engine/volume engine/formats",
     "engine/formats/tiff": "engine/base engine/volume engine/formats engine/formats/slices",
     "engine/formats/dicom": "engine/base engine/formats",
+    "engine/formats/meshes": "engine/base engine/volume",
     "engine/formats/zip": "engine/base",
     "engine/formats/zarr": "engine/base engine/volume engine/remote engine/formats engine/formats/zip shaders",
     "engine/formats/headers": "engine/base engine/volume engine/formats engine/formats/raw",
