@@ -713,6 +713,68 @@ def stylus(version, *lines, end=True, **head):
     return text + f'{{"end":{{"lines":{len(lines)},"hash":"{value:016x}"}}}}\n'
 
 
+def make_meshes():
+    corners = [(0, 0, 0), (1, 0, 0), (0, 2, 0), (0, 0, 4)]
+    faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+    stl = b"".join(struct.pack("<12fH", 0, 0, 1, *(x for i in face for x in corners[i]), 0) for face in faces)
+    header = b"SHVR surface, group 1, unit mm, positions are physical, in mm".ljust(80)
+    seed("mesh", "binary.stl", header + struct.pack("<I", 4) + stl)
+    seed("mesh", "solid.stl", b"solid".ljust(80) + struct.pack("<I", 4) + stl)
+    seed("mesh", "claims_triangles.stl", header + struct.pack("<I", 8000000) + stl)
+    facet = ("facet normal 0 0 1\n outer loop\n  vertex {} {} {}\n  vertex {} {} {}\n  vertex {} {} {}\n"
+             " endloop\nendfacet\n")
+    facets = [facet.format(*(x for i in face for x in corners[i])) for face in faces]
+    seed("mesh", "text.stl", "solid a\r\n" + facets[0] + facets[1] + "endsolid a\nsolid b\n" + facets[2] + "endsolid b\n")
+
+    quads = ("ply\nformat ascii 1.0\ncomment unit um\ncomment group 2 is vein\nelement vertex 4\nproperty float x\n"
+             "property float y\nproperty float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
+             "element face {}\nproperty list uchar int vertex_index\nproperty uchar group\nelement edge 1\n"
+             "property list int short ends\nend_header\n0 0 0 1 2 3\n1 0 0 1 2 3\n1 1 0 1 2 3\n0 1 0 1 2 3\n"
+             "4 0 1 2 3 1\n3 0 1 2 2\n2 0 1\n")
+    seed("mesh", "text.ply", quads.format(2))
+    seed("mesh", "claims_faces.ply", quads.format(8000000))
+    for order, mark in (("little", "<"), ("big", ">")):
+        ply = (f"ply\r\nformat binary_{order}_endian 1.0\r\nelement vertex {{}}\r\nproperty double x\r\nproperty float y\r\n"
+               "property short z\r\nelement face 2\r\nproperty list ushort uint vertex_indices\r\n"
+               "property list uchar float texcoord\r\nend_header\r\n")
+        body = b"".join(struct.pack(mark + "dfh", *corner) for corner in corners)
+        body += struct.pack(mark + "H3IBfH4IB", 3, 0, 1, 2, 1, 0.5, 4, 0, 1, 2, 3, 0)
+        seed("mesh", f"{order}.ply", ply.format(4).encode() + body)
+        seed("mesh", f"claims_{order}.ply", ply.format(4000000000).encode() + body)
+
+    square = "v 0 0 0\nv 1 0 0 1\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\n"
+    seed("mesh", "groups.obj", "# unit mm\n# space volume\n# group 3 is vein\n" + square +
+         "o cube\ng group_3\nf 1 2 3\ng\nf 1/1 2/1/1 3//1 4\nusemtl red\n")
+    seed("mesh", "backwards.obj", "mtllib a.mtl\r\n" + square + "s off\r\nf -4 -3 \\\r\n -2//-1 -1\r\nl 1 2\r\nf 1 2 5 # ahead\r\nv 2 2 2")
+
+    def glb(content, binary):
+        text = json.dumps(content).encode()
+        text += b" " * (-len(text) % 4)
+        return (struct.pack("<4s4I", b"glTF", 2, 28 + len(text) + len(binary), len(text), 0x4E4F534A) + text +
+                struct.pack("<II", len(binary), 0x004E4942) + binary)
+    binary = b"".join(struct.pack("<3f", *corner) for corner in corners) + struct.pack("<6H", 0, 1, 2, 0, 2, 3)
+    content = {"asset": {"version": "2.0", "extras": {"comments": ["unit mm", "space physical"]}}, "scene": 0,
+               "scenes": [{"nodes": [0]}],
+               "nodes": [{"children": [1, 2], "translation": [1, 2, 3], "scale": [0.1, 0.1, 0.1]}, {"mesh": 0},
+                         {"mesh": 1, "rotation": [0, 0, 0.6, 0.8], "name": "b"}],
+               "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 0}]},
+                          {"primitives": [{"attributes": {"POSITION": 0}, "mode": 5},
+                                          {"attributes": {"POSITION": 0}, "mode": 6}]}],
+               "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 0, 1]}}],
+               "buffers": [{"byteLength": 60}],
+               "bufferViews": [{"buffer": 0, "byteLength": 48, "byteStride": 12},
+                               {"buffer": 0, "byteOffset": 48, "byteLength": 12}],
+               "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
+                             {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"}]}
+    seed("mesh", "scene.glb", glb(content, binary))
+    content["accessors"][0]["count"] = 4000000000
+    seed("mesh", "claims_points.glb", glb(content, binary))
+    content["accessors"][0]["count"] = 4
+    content["nodes"][1] = {"mesh": 0, "matrix": [0, 3, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 2, 1]}
+    del content["scene"], content["scenes"]
+    seed("mesh", "matrix.glb", glb(content, binary))
+
+
 def make_stylus_trace():
     chosen = {"settings": {"assistance": True, "mode": "proximity", "threshold": 100, "probe_radius": 4,
                            "to_volume": [1000, 0, 0, 0, 1000, 0, 0, 0, 1000], "origin": [16, 8, 8]}}
@@ -770,6 +832,7 @@ def main():
     make_states()
     make_text()
     make_trace()
+    make_meshes()
     make_stylus_trace()
     make_journals()
     make_png()
