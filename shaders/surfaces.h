@@ -69,9 +69,11 @@ struct SurfaceParams {
     float end;     ///< end of the clip range
     float slack;   ///< margin added to boxes on each side, above the rounding error
     uint node_count;
-    uint first_node;  ///< the block: the range of nodes that this dispatch visits
+    uint first_node;  ///< range of nodes that this dispatch visits for tiles; rays visit up to nodes_in_round of all
     uint end_node;
-    uint is_last_block;
+    uint nodes_in_round;
+    uint is_first_round;
+    uint is_last_round;
     vec3 probe_center;  ///< position relative to the origin; the probe is an additional ball
     float probe_radius;
     vec3 probe_color;  ///< linear light

@@ -58,6 +58,7 @@ MAY_INCLUDE = {
     "engine/annotation/measures engine/annotation/trace engine/remote engine/formats engine/formats/zarr engine/projects",
     "engine/movie": "engine/base engine/look engine/session engine/tasks",
     "engine/session/looks": "engine/base engine/session",
+    "engine/session/meshes": "engine/base engine/volume engine/look engine/annotation/trace engine/formats/meshes engine/session",
     "engine/session/words": "engine/base engine/annotation engine/session",
     "engine/jobs": "engine/base",
     "engine/pages": "engine/base",
@@ -65,7 +66,7 @@ MAY_INCLUDE = {
     "engine/ranks": "engine/base",
     "engine/ranks/alone": "engine/base engine/ranks",
     "engine/ranks/mpi": "engine/base engine/ranks",
-    "engine/tasks": "engine/base engine/pieces engine/volume engine/remote engine/look engine/components engine/formats/export engine/annotation "
+    "engine/tasks": "engine/base engine/pieces engine/volume engine/remote engine/look engine/components engine/formats/export engine/formats/meshes engine/annotation "
     "engine/annotation/trace engine/annotation/measures engine/annotation/patterns engine/annotation/meshes "
     "engine/annotation/files engine/annotation/writers engine/projects engine/session engine/jobs",
     "engine/device": "engine/base engine/volume engine/gpu engine/passes engine/look engine/bricks engine/annotation "
@@ -107,7 +108,8 @@ MAY_INCLUDE = {
     "engine/workbench/desk": "engine/base engine/session engine/session/looks engine/jobs engine/workbench/touch engine/workbench/models "
     "engine/workbench/actions engine/workbench/lists engine/workbench/sight engine/workbench/bindings "
     "engine/workbench/document",
-    "engine/workbench/services": "engine/base engine/remote engine/look engine/movie engine/annotation/operations engine/annotation/work engine/session engine/session/looks engine/session/words engine/tasks engine/live "
+    "engine/workbench/services": "engine/base engine/remote engine/look engine/movie engine/annotation/operations engine/annotation/work engine/formats/meshes "
+    "engine/projects engine/session engine/session/meshes engine/session/looks engine/session/words engine/tasks engine/live "
     "engine/workbench/models engine/workbench/actions engine/workbench/lists engine/workbench/sight engine/workbench/edits "
     "engine/workbench/words engine/workbench/document engine/workbench/desk",
     "engine/workbench": "engine/base engine/workbench/actions engine/workbench/lists engine/workbench/desk "
@@ -135,7 +137,7 @@ MAY_INCLUDE = {
     "tests/reference tools/golden tools/report",
     "tools/golden": "engine/base engine/annotation/script engine/session engine/live engine/pages shaders",
     "tools": "engine/base engine/remote engine/pages engine/pieces engine/ranks engine/volume engine/graph engine/gpu engine/projects engine/annotation/script engine/annotation/trace "
-    "engine/annotation/work engine/annotation/writers engine/session engine/jobs engine/tasks engine/movie engine/picture engine/live "
+    "engine/annotation/work engine/annotation/writers engine/session engine/session/meshes engine/jobs engine/tasks engine/movie engine/picture engine/live "
     "haptics haptics/devices haptics/hid ui engine/study engine/study/report engine/workbench "
     "engine/workbench/touch engine/workbench/lists engine/workbench/sight "
     "tools/golden tools/bench tools/report",

@@ -23,7 +23,8 @@ Resource tiles_block(FrameGraph& graph, const SurfacesInput& input, Resource til
     return input.scene.first_node > 0 ? pass.modify("surface_tiles", tiles) : pass.write("surface_tiles", tiles);
 }
 
-Resource surfaces_block(FrameGraph& graph, const SurfacesInput& input, Resource target, Resource tiles)
+/// One round of the search of all rays.
+Resource surfaces_round(FrameGraph& graph, const SurfacesInput& input, Resource target, Resource tiles)
 {
     const glm::uvec2 pixels = input.params.pixel_end - input.params.pixel_begin;
     Pass pass = graph.compute("surfaces", {{"LISTED", input.listed.has_value()}});
@@ -40,7 +41,7 @@ Resource surfaces_block(FrameGraph& graph, const SurfacesInput& input, Resource 
     pass.constant("PROBE", input.probe);
     pass.constant("TRIANGLES", input.listed && input.listed->triangles);
     pixel_groups(pass, pixels, input.pixel_groups);
-    return input.scene.first_node > 0 ? pass.modify("surfaces", target) : pass.write("surfaces", target);
+    return input.scene.is_first_round ? pass.write("surfaces", target) : pass.modify("surfaces", target);
 }
 
 }  // namespace
@@ -49,21 +50,27 @@ Resource surfaces(FrameGraph& graph, const SurfacesInput& input)
 {
     const glm::uvec2 pixels = input.params.pixel_end - input.params.pixel_begin;
     const uint32_t nodes = input.listed ? input.scene.node_count : 0;
-    std::vector<SurfacesInput> blocks;
-    for (uint32_t first = 0; first == 0 || first < nodes; first += input.nodes_in_dispatch) {
-        SurfacesInput& block = blocks.emplace_back(input);
-        block.scene.first_node = first;
-        block.scene.end_node = std::min(first + input.nodes_in_dispatch, nodes);
-        block.scene.is_last_block = first + input.nodes_in_dispatch >= nodes;
-    }
+    const uint32_t blocks = std::max((nodes + input.nodes_in_dispatch - 1) / input.nodes_in_dispatch, 1u);
+    SurfacesInput part = input;
+    part.scene.end_node = nodes;
+    part.scene.nodes_in_round = input.nodes_in_dispatch;
     Resource tiles;
     if (input.listed) {
         const glm::uvec2 counts = gpu::surface_tiles_of(pixels);
         tiles = graph.create("surface tiles", picture_desc(Format::r32_uint, gpu::SURFACE_TILE * counts));
-        for (const SurfacesInput& block : blocks) tiles = tiles_block(graph, block, tiles);
+        for (uint32_t block = 0; block < blocks; ++block) {
+            part.scene.first_node = block * input.nodes_in_dispatch;
+            part.scene.end_node = std::min(part.scene.first_node + input.nodes_in_dispatch, nodes);
+            tiles = tiles_block(graph, part, tiles);
+        }
     }
     Resource target = graph.create("surfaces", picture_desc(Format::rgba32_float, pixels));
-    for (const SurfacesInput& block : blocks) target = surfaces_block(graph, block, target, tiles);
+    const uint32_t rounds = std::min(blocks, input.max_rounds);
+    for (uint32_t round = 0; round < rounds; ++round) {
+        part.scene.is_first_round = round == 0;
+        part.scene.is_last_round = round + 1 == rounds;
+        target = surfaces_round(graph, part, target, tiles);
+    }
     return target;
 }
 

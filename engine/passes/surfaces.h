@@ -23,6 +23,9 @@ struct SurfaceList {
 /// Tile lists add a few hundred iterations. A lower limit would cost more dispatches, and a dispatch that finds nothing
 /// still sets up every ray.
 inline constexpr uint32_t NODES_IN_DISPATCH = 60'000 / (2 + gpu::SURFACES_IN_LEAF);
+/// Maximum number of dispatches in which rays search the boxes. A ray along a sheet of a million triangles visits about
+/// 10,000 nodes; one that needs more than these rounds is counted as cut short.
+inline constexpr uint32_t MAX_SEARCH_ROUNDS = 6;
 
 struct SurfacesInput {
     gpu::RaycastParams params;  ///< the ray caster's parameters: only pixels, light and distance blending are used
@@ -30,7 +33,8 @@ struct SurfacesInput {
     std::optional<SurfaceList> listed;
     bool probe = false;  ///< requires scene.probe_* to be set
     PixelGroups pixel_groups;
-    uint32_t nodes_in_dispatch = NODES_IN_DISPATCH;  ///< other values are for tests
+    uint32_t nodes_in_dispatch = NODES_IN_DISPATCH;  ///< other values are for tests, as is the next
+    uint32_t max_rounds = MAX_SEARCH_ROUNDS;
 };
 
 /// Device bytes per tile of a part, in addition to the image.

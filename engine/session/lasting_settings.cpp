@@ -31,6 +31,7 @@ void set_lasting_settings(Session& session, const SettingValues& values)
     if (has("blend")) session.blend = read.blend;
     if (has("cut")) session.cut = read.cut;
     if (has("measurements")) session.measurements = read.measurements;
+    if (has("meshes")) session.meshes = read.meshes;
     if (has("picture")) take_picture(session.render, read.render);
 }
 

@@ -306,4 +306,23 @@ std::vector<std::string> camera_names(const Session& session)
     return names;
 }
 
+fs::path session_folder(const Session& session)
+{
+    const fs::path& beside = session.journal_path.empty() ? session.volume_path : session.journal_path;
+    return fs::absolute(beside).lexically_normal().parent_path();
+}
+
+fs::path mesh_path(const Session& session, const MeshLook& mesh)
+{
+    return (session_folder(session) / mesh.file).lexically_normal();
+}
+
+std::string mesh_file_name(const Session& session, const fs::path& path)
+{
+    const fs::path whole = fs::absolute(path).lexically_normal();
+    const fs::path relative = whole.lexically_relative(session_folder(session));
+    const bool is_inside = !relative.empty() && *relative.begin() != "..";
+    return (is_inside ? relative : whole).generic_string();
+}
+
 }  // namespace shvr

@@ -16,7 +16,7 @@
 #include "engine/look/look.h"
 #include "engine/look/panes.h"
 #include "engine/look/settings.h"
-#include "engine/look/surface_tree.h"
+#include "engine/look/surfaces/surface_tree.h"
 #include "engine/look/transfer_function.h"
 #include "engine/touch/touch_mode.h"
 #include "engine/volume/procedural/source_procedural.h"
@@ -139,6 +139,17 @@ struct ProbeSettings {
 /// Maximum number of surfaces in one session file.
 inline constexpr size_t MAX_SESSION_SURFACES = 100'000;
 
+/// Maximum number of meshes in a session.
+inline constexpr size_t MAX_SESSION_MESHES = 64;
+
+/// A mesh of a file, to be shown with the volume (engine/session/meshes).
+struct MeshLook {
+    std::string file;                 ///< path, absolute or relative to the session's folder (session_folder)
+    std::optional<glm::dvec3> color;  ///< linear light; default: the file's colours
+    bool shown = true;
+    bool operator==(const MeshLook&) const = default;
+};
+
 struct Session {
     std::filesystem::path volume_path;  ///< absolute, or empty if `procedural` is set
     std::optional<ProceduralSpec> procedural;
@@ -168,6 +179,7 @@ struct Session {
     std::filesystem::path density_path;  ///< path of the density offsets, likewise
     /// The journal next to the session file (engine/annotation/work/work.h). Empty if a bare volume was opened.
     std::filesystem::path journal_path;
+    std::vector<MeshLook> meshes;  ///< at most MAX_SESSION_MESHES
     bool operator==(const Session&) const = default;
 
     /// Returns the part of the session that determines pictures.
@@ -210,6 +222,12 @@ struct UnmeasuredSession {
 };
 UnmeasuredSession open_unmeasured_session(const std::filesystem::path& path,
                                           const std::vector<std::string>& settings = {});
+
+/// The folder of the session's file; for a volume without a session, that of the volume. Absolute.
+std::filesystem::path session_folder(const Session& session);
+std::filesystem::path mesh_path(const Session& session, const MeshLook& mesh);
+/// Returns how a session names a mesh's file: relative to its folder if the file is in it, else absolute.
+std::string mesh_file_name(const Session& session, const std::filesystem::path& path);
 
 /// Returns the session file to open for `path`: `path` itself, or the session file of a project, which may be missing;
 /// empty for a volume. Fails if nothing exists at `path`.

@@ -531,7 +531,28 @@ void fields(Fields& f, Measurement& measurement)
             "2 points for a distance, 2 or more for a path and 3 for an angle");
 }
 
+void fields(Fields& f, MeshLook& mesh)
+{
+    f.text("file", mesh.file,
+           {.meaning = "file of the mesh: `.stl`, `.ply`, `.obj` or `.glb`, in the volume's physical space and unit "
+                       "unless the file states others",
+            .allowed = "path, relative to the session's folder",
+            .standard = "required",
+            .is_required = true});
+    f.check("file", !mesh.file.empty() && mesh.file.size() < PATH_MAX && !has_controls(mesh.file),
+            "a path of less than 4096 bytes");
+    f.color("color", mesh.color, {.meaning = "colour", .standard = "the file's, or `\"#c8b48c\"`"});
+    f.flag("shown", mesh.shown, {"false: the mesh is kept, and not drawn"});
+}
+
 namespace {
+
+const About MESHES{.meaning =
+                       "surfaces of files, such as those that other programs or `shvr export --surface` wrote; "
+                       "cutting planes do not affect them",
+                   .allowed = "array of at most 64",
+                   .standard = "none"};
+static_assert(MAX_SESSION_MESHES == 64);
 
 const About MEASUREMENTS{.meaning = "distances, paths and angles measured in the window",
                          .allowed = "array of at most 1000",
@@ -543,6 +564,7 @@ void work_fields(Fields& f, Session& session)
     look_fields(f, session);
     f.section("cut", session.cut);
     f.list("measurements", session.measurements, MAX_MEASUREMENTS, MEASUREMENTS);
+    f.list("meshes", session.meshes, MAX_SESSION_MESHES, MESHES);
 }
 
 /// Fields of settings that are neither cameras nor part of the work.
@@ -602,6 +624,10 @@ void fields(Fields& f, Session& session)
         f.list("surfaces", session.surfaces, MAX_SESSION_SURFACES, surfaces);
     else
         f.mention("surfaces", surfaces);
+    if (f.has("meshes", !session.meshes.empty()))
+        f.list("meshes", session.meshes, MAX_SESSION_MESHES, MESHES);
+    else
+        f.mention("meshes", MESHES);
     const bool has_files = !session.mask_path.empty() || !session.trace_path.empty() || !session.density_path.empty();
     if (f.has("annotation", has_files))
         f.section("annotation", [&](Fields& annotation) { annotation_fields(annotation, session); });

@@ -79,6 +79,7 @@ Session patched(const Session& session, std::string_view patch)
     changed.blend = read.blend;
     changed.cut = read.cut;
     changed.measurements = read.measurements;
+    changed.meshes = read.meshes;
     changed.render = read.render;
     changed.view = read.view;
     changed.interaction = read.interaction;

@@ -168,6 +168,9 @@ SettingValues kept_settings(const Session& session)
 std::string to_text(const Session& session, const std::filesystem::path& folder)
 {
     Session written = session;  // a copy, since fields() takes a mutable session
+    for (MeshLook& mesh : written.meshes)
+        if (std::filesystem::absolute(folder / ".").lexically_normal() != session_folder(session) / "")
+            mesh.file = path_text(mesh_path(session, mesh), folder);
     try {
         const OrderedJson document = Writer::write(folder, [&](Fields& f) { fields(f, written); });
         return laid_out(document, "", false) + "\n";

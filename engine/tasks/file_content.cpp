@@ -9,6 +9,7 @@
 #include "engine/base/file.h"
 #include "engine/base/json.h"
 #include "engine/base/text.h"
+#include "engine/formats/meshes/mesh_file.h"
 #include "engine/session/picture_session.h"
 #include "engine/session/session.h"
 
@@ -19,10 +20,10 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int64_t MAX_JSON_BYTES = int64_t{16} << 20;
-constexpr const char* LOADED = "a mask, density offsets, a trace or a transfer function";
+constexpr const char* LOADED = "a mask, density offsets, a trace, a transfer function or a mesh";
 constexpr const char* EXPECTED =
-    "; expected a volume, a session, a project, a mask, density offsets, a trace, a transfer function or a picture "
-    "that was made here";
+    "; expected a volume, a session, a project, a mask, density offsets, a trace, a transfer function, a mesh or a "
+    "picture that was made here";
 
 std::string first_bytes(const fs::path& path)
 {
@@ -103,6 +104,7 @@ WhatItIs content_of(const fs::path& path, const VolumeInfo* open)
     if (begin.find("<graphml") != std::string::npos || begin.find("<rsml") != std::string::npos)
         return {.content = FileContent::trace};
     if (is_trace_file(path) && begins_like_a_trace(begin)) return {.content = FileContent::trace};
+    if (is_mesh_file(path)) return {.content = FileContent::mesh};
     return content_of_volume(path, open);
 }
 
@@ -141,6 +143,7 @@ WhatItIs what_annotation_is(const fs::path& path, const VolumeInfo& open)
         case FileContent::mask:
         case FileContent::offsets:
         case FileContent::trace:
+        case FileContent::mesh:
         case FileContent::transfer_function: return found;
         case FileContent::volume:
             return refused(sentence(

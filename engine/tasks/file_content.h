@@ -19,6 +19,7 @@ enum class FileContent {
     offsets,
     trace,
     transfer_function,
+    mesh,
 };
 struct WhatItIs {
     std::optional<FileContent> content;

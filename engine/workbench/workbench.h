@@ -138,9 +138,10 @@ private:
     Services services_{desk_};
     RecentActions recent_;
     /// Services in the order of a step
-    const std::array<Service*, 10> turn_{
-        &services_.tasks,    &services_.opener,  &services_.reloader, &services_.saver,  &services_.hand,
-        &services_.settings, &services_.painter, &services_.viewer,   &services_.reader, &services_.photographer};
+    const std::array<Service*, 11> turn_{&services_.tasks,    &services_.opener,      &services_.reloader,
+                                         &services_.meshes,   &services_.saver,       &services_.hand,
+                                         &services_.settings, &services_.painter,     &services_.viewer,
+                                         &services_.reader,   &services_.photographer};
 };
 
 }  // namespace shvr::ui

@@ -6,9 +6,9 @@
 // If a tile meets few surfaces, its rays test the surfaces that surface_tiles.comp has listed for the tile; other rays
 // search the boxes. The result is the same, since the nearest surface counts, regardless of the order of the tests.
 //
-// Nodes are visited in blocks, one dispatch each, because some devices silently abort a thread's loops after 65535
-// iterations. Between blocks the target holds what a ray has met: its length, the surface's index in two parts, and
-// whether the ray begins inside. Listed surfaces are tested in the last block.
+// A dispatch visits a limited number of nodes for each ray, because some devices silently abort a thread's loops after
+// 65535 iterations. Between these rounds the target holds what a ray has met: its length, the surface's index, whether
+// the ray begins inside, and the node at which the search goes on. Listed surfaces are tested in the last round.
 //
 // Surfaces are solid: if a ray starts inside one (the near plane cuts the surface, or the eye is in it), the ray hits
 // it at its start, facing the eye. Triangles have no inside: those before the start are not met. The volume's cutting
@@ -48,12 +48,11 @@ struct Hit {
     uint number;
     uint index;     // in the list; PROBE_INDEX
 };
-const uint PROBE_INDEX = 0xffffffffu;
-const uint INDEX_PART = 4096u;   // a float holds each part exactly
+const uint PROBE_INDEX = 0xffffffu;   // the largest index that a float holds exactly, with all below it
 
-vec4 packed_hit(const Hit hit)
+vec4 packed_hit(const Hit hit, uint node)
 {
-    return vec4(hit.at, float(hit.index / INDEX_PART), float(hit.index % INDEX_PART), float(hit.is_inside));
+    return vec4(hit.at, float(hit.index), float(hit.is_inside), float(node));
 }
 
 // Replaces the hit by this surface if its range begins earlier or, at equal length, if its number is lower. The result
@@ -94,12 +93,12 @@ void meet(const SurfaceParams scene, const Line line, float begin, uint index, i
 
 // Every variable used after the loop is carried through it, because devices that run the loop until its last lane is
 // done keep only such variables of lanes that have finished.
-void search(const SurfaceParams scene, const Line line, float begin, uint first_node, inout Hit hit)
+void search(const SurfaceParams scene, const Line line, float begin, inout uint node, inout Hit hit)
 {
     const vec3 safe = mix(line.direction, vec3(1e-20), lessThan(abs(line.direction), vec3(1e-20)));
     const vec3 inverse = 1.0 / safe;
     const vec3 origin = scene.origin + line.origin;
-    uint node = first_node;
+    uint visits = 0u;
     if (node < scene.end_node) do {
         const SurfaceNode box = surface_node(node);
         const vec3 a = (box.lower - scene.slack - origin) * inverse;
@@ -112,8 +111,7 @@ void search(const SurfaceParams scene, const Line line, float begin, uint first_
         uint i = box.begin;
         if (i < end) do meet(scene, line, begin, i, hit); while (++i < end);
         node = is_met ? node + 1u : box.skip;
-    } while (node < scene.end_node);
-    count(COUNTER_CUT_SHORT, uint(node < scene.end_node));
+    } while (node < scene.end_node && ++visits < scene.nodes_in_round);
 }
 
 uint listed_word(uvec2 tile, uint number)
@@ -130,13 +128,13 @@ uint next_in_block(uvec2 tile, uint block, uint next, uint count)
     return next;
 }
 
-// The result of earlier blocks.
+// The result of earlier rounds.
 Hit unpacked_hit(const vec4 packed)
 {
-    const uint index = uint(packed.y) * INDEX_PART + uint(packed.z);
+    const uint index = uint(packed.y);
     uint number = PROBE_INDEX;
     if (index != PROBE_INDEX) number = TRIANGLES != 0u ? triangle_at(index).number : surface_at(index).number;
-    return Hit(packed.x, packed.w != 0.0, number, index);
+    return Hit(packed.x, packed.z != 0.0, number, index);
 }
 #endif
 
@@ -200,10 +198,17 @@ void main()
 
     Hit hit = Hit(end, false, 0u, PROBE_INDEX);  // initial hit: the far plane, which only nearer surfaces replace
 #ifdef LISTED
-    const uint count = imageLoad(surface_tiles, ivec2(surface_tile_texel(in_part / SURFACE_TILE, 0u))).x;
-    const bool is_listed = count <= SURFACES_IN_TILE;
-    if (is_listed && scene.is_last_block == 0u) return;
-    const bool is_first = is_listed || scene.first_node == 0u;
+    const uint listed = imageLoad(surface_tiles, ivec2(surface_tile_texel(in_part / SURFACE_TILE, 0u))).x;
+    const bool is_listed = listed <= SURFACES_IN_TILE;
+    if (is_listed && scene.is_last_round == 0u) return;
+    const bool is_first = is_listed || scene.is_first_round != 0u;
+    uint node = is_listed ? scene.end_node : 0u;
+    if (!is_first) {
+        const vec4 packed = imageLoad(surfaces, ivec2(in_part));
+        node = uint(packed.w);
+        if (node >= scene.end_node && scene.is_last_round == 0u) return;
+        hit = unpacked_hit(packed);
+    }
 #else
     const bool is_first = true;
 #endif
@@ -211,13 +216,13 @@ void main()
         consider(ball_range(scene.probe_center - line.origin, line.direction, scene.probe_radius), begin, PROBE_INDEX,
                  PROBE_INDEX, hit);
 #ifdef LISTED
-    if (!is_first) hit = unpacked_hit(imageLoad(surfaces, ivec2(in_part)));
-    meet_listed(scene, line, begin, in_part, is_listed ? count : 0u, hit);
-    search(scene, line, begin, is_listed ? scene.end_node : scene.first_node, hit);
-    if (scene.is_last_block == 0u) {
-        imageStore(surfaces, ivec2(in_part), packed_hit(hit));
+    meet_listed(scene, line, begin, in_part, is_listed ? listed : 0u, hit);
+    search(scene, line, begin, node, hit);
+    if (scene.is_last_round == 0u) {
+        imageStore(surfaces, ivec2(in_part), packed_hit(hit, node));
         return;
     }
+    count(COUNTER_CUT_SHORT, uint(node < scene.end_node));
 #endif
     if (!(hit.at < end)) {
         imageStore(surfaces, ivec2(in_part), vec4(0.0, 0.0, 0.0, NO_SURFACE));

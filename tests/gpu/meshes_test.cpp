@@ -97,7 +97,7 @@ public:
     VolumeInfo info;
     glm::uvec2 pixels{40, 32};
     glm::vec3 light{0.0f, 0.0f, -1.0f};
-    uint32_t nodes_in_dispatch = NODES_IN_DISPATCH;
+    uint32_t nodes_in_dispatch = NODES_IN_DISPATCH, max_rounds = UINT32_MAX;
     uint64_t rays_cut_short = 0;
 
     Meshes() { info.size = Size3(100); }
@@ -113,7 +113,8 @@ public:
                             .scene = scene.params(planes, pixels, info),
                             .listed = scene.upload(graph),
                             .pixel_groups = {.tile = {128, 128}},
-                            .nodes_in_dispatch = nodes_in_dispatch};
+                            .nodes_in_dispatch = nodes_in_dispatch,
+                            .max_rounds = max_rounds};
         input.params.pixel_end = pixels;
         input.params.light = light;
         input.params.diffuse = 1.0f;

@@ -94,14 +94,27 @@ Members preview_params()
 
 Members surface_params()
 {
-    return {
-        MEMBER(SurfaceParams, origin),        MEMBER(SurfaceParams, origin_rest),  MEMBER(SurfaceParams, middle_corner),
-        MEMBER(SurfaceParams, middle_dx),     MEMBER(SurfaceParams, middle_dy),    MEMBER(SurfaceParams, along_corner),
-        MEMBER(SurfaceParams, along_dx),      MEMBER(SurfaceParams, along_dy),     MEMBER(SurfaceParams, begin),
-        MEMBER(SurfaceParams, middle),        MEMBER(SurfaceParams, end),          MEMBER(SurfaceParams, slack),
-        MEMBER(SurfaceParams, node_count),    MEMBER(SurfaceParams, first_node),   MEMBER(SurfaceParams, end_node),
-        MEMBER(SurfaceParams, is_last_block), MEMBER(SurfaceParams, probe_center), MEMBER(SurfaceParams, probe_radius),
-        MEMBER(SurfaceParams, probe_color)};
+    return {MEMBER(SurfaceParams, origin),
+            MEMBER(SurfaceParams, origin_rest),
+            MEMBER(SurfaceParams, middle_corner),
+            MEMBER(SurfaceParams, middle_dx),
+            MEMBER(SurfaceParams, middle_dy),
+            MEMBER(SurfaceParams, along_corner),
+            MEMBER(SurfaceParams, along_dx),
+            MEMBER(SurfaceParams, along_dy),
+            MEMBER(SurfaceParams, begin),
+            MEMBER(SurfaceParams, middle),
+            MEMBER(SurfaceParams, end),
+            MEMBER(SurfaceParams, slack),
+            MEMBER(SurfaceParams, node_count),
+            MEMBER(SurfaceParams, first_node),
+            MEMBER(SurfaceParams, end_node),
+            MEMBER(SurfaceParams, nodes_in_round),
+            MEMBER(SurfaceParams, is_first_round),
+            MEMBER(SurfaceParams, is_last_round),
+            MEMBER(SurfaceParams, probe_center),
+            MEMBER(SurfaceParams, probe_radius),
+            MEMBER(SurfaceParams, probe_color)};
 }
 
 Members occupancy_params()

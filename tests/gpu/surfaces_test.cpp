@@ -83,7 +83,7 @@ public:
     glm::vec3 light{0.0f, 0.0f, 1.0f};
     size_t max_in_leaf = gpu::SURFACES_IN_LEAF;
     PixelGroups groups{.tile = {128, 128}};
-    uint32_t nodes_in_dispatch = NODES_IN_DISPATCH;
+    uint32_t nodes_in_dispatch = NODES_IN_DISPATCH, max_rounds = UINT32_MAX;
     uint64_t rays_cut_short = 0;  // of all looks
 
     Surfaces() { info.size = Size3(100); }
@@ -99,7 +99,8 @@ public:
                             .scene = scene.params(planes, pixels, info),
                             .listed = scene.upload(graph),
                             .pixel_groups = groups,
-                            .nodes_in_dispatch = nodes_in_dispatch};
+                            .nodes_in_dispatch = nodes_in_dispatch,
+                            .max_rounds = max_rounds};
         input.params.pixel_end = pixels;
         input.params.light = light;
         input.params.diffuse = 1.0f;

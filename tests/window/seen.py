@@ -16,7 +16,7 @@ KEY_NAMES = {",": "comma", ".": "period", "/": "slash", "=": "equal", "-": "minu
 
 PANELS = {"transfer_function": "Transfer function", "groups": "Colour groups", "probe": "Brush and probe",
           "touch": "Touch and guidance", "trace": "Tracing", "trace_list": "Tracing list",
-          "measurements": "Measurements", "light": "Light and depth",
+          "measurements": "Measurements", "meshes": "Meshes", "light": "Light and depth",
           "occlusion": "Ambient occlusion", "cuts": "Cutting planes", "quality": "Render quality",
           "aids": "What is shown", "views": "Views", "history": "History"}   # with their titles
 

@@ -7,9 +7,11 @@
 #include "engine/base/image_file.h"
 #include "engine/base/text.h"
 #include "engine/live/previewer.h"
+#include "engine/projects/import_memory.h"
 #include "engine/session/annotation_files.h"
 #include "engine/session/kept_settings.h"
 #include "engine/session/lasting_settings.h"
+#include "engine/session/meshes/session_meshes.h"
 #include "engine/tasks/task_options.h"
 #include "engine/volume/unit.h"
 #include "tools/golden/blessing.h"
@@ -284,6 +286,19 @@ void take_settings(Session& session, const Work& left, const std::vector<std::st
     set_kept_settings(session, without_overridden(left.kept_settings(), overridden));
 }
 
+/// Reads the session's meshes. A mesh that cannot be read makes the picture another one than the session states.
+void show_meshes(Opened& opened, const std::string& path, const Common& common, LongWork& work)
+{
+    if (opened.session.meshes.empty()) return;
+    ReadMeshes read = read_meshes(opened.session, opened.source->info(), uint64_t(import_budget(0)),
+                                  work.begin("reading meshes of " + path));
+    if (!read.failures.empty() && common.allows_incomplete == false)
+        fail(read.failures.front(), "; --allow-incomplete draws the picture without it");
+    warn(read.failures, common);
+    opened.warnings.insert(opened.warnings.end(), read.failures.begin(), read.failures.end());
+    opened.renderer->scene().show_meshes(std::move(read.tree));
+}
+
 /// A volume of which parts may be unreadable; owns the sources that `source` refers to.
 struct Readable {
     Readable(std::shared_ptr<const VolumeSource> whole, std::shared_ptr<Gaps> what_is_not)
@@ -360,6 +375,7 @@ Opened open(const std::string& path, const Common& common, LongWork& work, Work:
     if (!is_picture) take_settings(opened.session, left, common.settings);
     opened.renderer->scene().show_surfaces(opened.session.surfaces, opened.annotator->document().trace,
                                            opened.session.groups);
+    show_meshes(opened, path, common, work);
     return opened;
 }
 

@@ -34,6 +34,7 @@ void touch_panel(const Model& model, Actions& actions);
 void trace_panel(const Model& model, Actions& actions);
 void trace_list_panel(const Model& model, Actions& actions);
 void measurements_panel(const Model& model, Actions& actions);
+void meshes_panel(const Model& model, Actions& actions);
 void light_panel(const Model& model, Actions& actions);
 void occlusion_panel(const Model& model, Actions& actions);
 void cuts_panel(const Model& model, Actions& actions);
@@ -53,6 +54,7 @@ inline constexpr PanelBody PANEL_BODIES[] = {
     {"trace", trace_panel},
     {"trace_list", trace_list_panel},
     {"measurements", measurements_panel},
+    {"meshes", meshes_panel},
     {"light", light_panel},
     {"occlusion", occlusion_panel},
     {"cuts", cuts_panel},

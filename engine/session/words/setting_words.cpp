@@ -32,6 +32,7 @@ constexpr SectionRow SECTIONS[] = {
     {"blend", "blend", "distance blending"},
     {"cut", "cut", "the cutting planes"},
     {"measurements", "measurements", "the measurements"},
+    {"meshes", "meshes", "the meshes"},
     {"render", "render", "the rendering"},
     {"picture", "render", "the look of the picture"},
     {"view", "view", "the panes"},

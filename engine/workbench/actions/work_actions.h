@@ -52,10 +52,14 @@ struct LookAtFile {
 };
 
 /// How to use a file: as its contents suggest, or as the user states.
-enum class FileUse { by_contents, scan, mask, offsets, trace, look };
-inline constexpr Spelling<FileUse> FILE_USES[] = {
-    {FileUse::by_contents, "by_contents"}, {FileUse::scan, "scan"},   {FileUse::mask, "mask"},
-    {FileUse::offsets, "offsets"},         {FileUse::trace, "trace"}, {FileUse::look, "look"}};
+enum class FileUse { by_contents, scan, mask, offsets, trace, look, mesh };
+inline constexpr Spelling<FileUse> FILE_USES[] = {{FileUse::by_contents, "by_contents"},
+                                                  {FileUse::scan, "scan"},
+                                                  {FileUse::mask, "mask"},
+                                                  {FileUse::offsets, "offsets"},
+                                                  {FileUse::trace, "trace"},
+                                                  {FileUse::look, "look"},
+                                                  {FileUse::mesh, "mesh"}};
 constexpr std::span<const Spelling<FileUse>> spellings_of(FileUse)
 {
     return FILE_USES;
@@ -72,7 +76,8 @@ struct TakeFile {
     bool previews = false;  ///< annotation for the open document is previewed (PreviewLoad) instead of added at once
 };
 
-/// Adds annotation or a transfer function to the open document, as a step that can be undone; opens no document.
+/// Adds annotation, a transfer function or a mesh to the open document, as a step that can be undone; opens no
+/// document.
 struct LoadAnnotation {
     std::filesystem::path path;
     FileUse what = FileUse::by_contents;
@@ -224,7 +229,8 @@ inline constexpr auto WORK_ACTIONS = std::tuple{
                              }),
     row<LoadAnnotation, FileTaker>(
         {"load", "Load annotation", WORK_GROUP,
-         "loads a mask, density offsets, a trace or a transfer function (look) into the open scan, and opens nothing"},
+         "loads a mask, density offsets, a trace or a transfer function (look) into the open scan, or shows a mesh "
+         "with it; opens nothing"},
         [](auto& f, LoadAnnotation& a) {
             f.path("path", a.path, {.is_required = true});
             f.choice("what", a.what, {"what the file is, if its contents do not state it"});

@@ -17,6 +17,7 @@ inline constexpr PanelRow PANELS[] = {
     {.id = "trace", .title = "Tracing", .hint = "Nodes, internodes and what is selected."},
     {.id = "trace_list", .title = "Tracing list", .hint = "All segments and nodes, to go to.", .is_folded = true},
     {.id = "measurements", .title = "Measurements", .hint = "Distances, paths and angles, to name and export."},
+    {.id = "meshes", .title = "Meshes", .hint = "Surfaces of files, shown with the scan.", .is_folded = true},
     {.id = "light", .title = "Light and depth", .hint = "Light, highlight and distance blending.", .is_folded = true},
     {.id = "occlusion", .title = "Ambient occlusion", .hint = "Soft shade in hollows.", .is_folded = true},
     {.id = "cuts", .title = "Cutting planes", .hint = "Limits of the visible part, in numbers.", .is_folded = true},

@@ -298,6 +298,16 @@ bool Document::record_settings()
     return annotator.change_settings(difference_of(annotator.work().settings(), now), now) != nullptr;
 }
 
+bool Document::record_sections(std::initializer_list<std::string_view> names)
+{
+    if (only_looks()) return false;
+    const auto is_other = [&](const auto& section) { return std::ranges::find(names, section.first) == names.end(); };
+    SettingValues before = annotator.work().settings(), now = lasting_settings(session);
+    std::erase_if(before, is_other);
+    std::erase_if(now, is_other);
+    return annotator.change_settings(difference_of(before, now), now) != nullptr;
+}
+
 void Document::take_settings()
 {
     set_lasting_settings(session, annotator.work().settings());

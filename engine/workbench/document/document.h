@@ -155,6 +155,8 @@ struct Document {
     /// Adds all settings that changed since the last step to the history, as one step. Call it only while no stroke is
     /// running. Returns whether any setting had changed.
     bool record_settings();
+    /// The same for some sections alone, in scripts too: what a script loads is kept, though not what --set states.
+    bool record_sections(std::initializer_list<std::string_view> names);
     /// Applies the settings that the history holds after undo or redo.
     void take_settings();
     /// A background save of the state at which it began. Each file is replaced atomically: first mask, offsets and

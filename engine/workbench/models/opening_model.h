@@ -43,8 +43,9 @@ struct UnclearFile {
 /// Annotation or a transfer function that was read but not loaded, and the changes it would make (PreviewLoad).
 struct LoadPreview {
     std::filesystem::path path;
-    std::optional<Part> part{};  ///< null: a transfer function
-    std::string changes;         ///< a sentence: "1200 voxels would change their group"
+    std::optional<Part> part{};  ///< null: a transfer function or a mesh
+    bool is_mesh = false;
+    std::string changes;  ///< a sentence: "1200 voxels would change their group"
     bool changes_anything = true;
     bool is_being_read = false;  ///< what follows is not known yet
     std::string failure{};       ///< why the file cannot be loaded; empty: it can

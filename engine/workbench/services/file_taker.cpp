@@ -8,11 +8,14 @@
 #include "engine/base/atomic_file.h"
 #include "engine/base/file.h"
 #include "engine/base/json.h"
+#include "engine/formats/meshes/mesh_file.h"
+#include "engine/projects/import_memory.h"
 #include "engine/remote/address.h"
 #include "engine/session/label_looks.h"
 #include "engine/session/lasting_settings.h"
 #include "engine/session/looks/named_look.h"
 #include "engine/session/session_patch.h"
+#include "engine/workbench/edits/edit.h"
 #include "engine/workbench/words/load_words.h"
 
 namespace shvr::ui {
@@ -53,6 +56,7 @@ FileUse use_of(FileContent content)
     return content == FileContent::mask      ? FileUse::mask
            : content == FileContent::offsets ? FileUse::offsets
            : content == FileContent::trace   ? FileUse::trace
+           : content == FileContent::mesh    ? FileUse::mesh
                                              : FileUse::look;
 }
 
@@ -212,11 +216,12 @@ void FileTaker::take_together(std::vector<std::filesystem::path> paths, Step ste
     });
 }
 
-/// A transfer function is not previewed: it is seen at once, and changes no annotation.
+/// Transfer functions and meshes are not previewed: they are seen at once, and change no annotation.
 void FileTaker::take(FileContent content, const std::filesystem::path& path, Step step)
 {
     if (is_opened(content)) return others_.begin_open(path, {}, {}, true);
-    take_as(use_of(content), path, content == FileContent::transfer_function ? Step::load : step);
+    const bool is_seen = content == FileContent::transfer_function || content == FileContent::mesh;
+    take_as(use_of(content), path, is_seen ? Step::load : step);
 }
 
 // ---- Annotation and transfer functions loaded into the open document ------------------------------------------------
@@ -225,15 +230,18 @@ void FileTaker::take(FileContent content, const std::filesystem::path& path, Ste
 struct FileTaker::ReadFile {
     std::filesystem::path path;
     uint64_t opening = 0;        ///< number of the document for which the file was read (Desk::openings)
-    std::optional<Part> part{};  ///< null: a transfer function
+    std::optional<Part> part{};  ///< null: a transfer function or a mesh
     std::string text{};          ///< contents of a transfer function
+    size_t triangles = 0;        ///< number of a mesh's triangles
+    bool is_mesh = false;
     std::shared_ptr<const shvr::Document> found{};
     LoadNotes notes{};
     Groups groups{}, looks{};  ///< the document's groups, without and with the names and colours that a mask adds
 
     FileUse use() const
     {
-        return !part                    ? FileUse::look
+        return is_mesh                  ? FileUse::mesh
+               : !part                  ? FileUse::look
                : *part == Part::mask    ? FileUse::mask
                : *part == Part::offsets ? FileUse::offsets
                                         : FileUse::trace;
@@ -328,6 +336,7 @@ void FileTaker::take_as(FileUse use, const std::filesystem::path& path, Step ste
 {
     if (!document_) fail(path.string(), ": belongs to a volume; expected that to be open, to take it into");
     if (use == FileUse::look) return read_transfer_function(path, step);
+    if (use == FileUse::mesh) return read_mesh_file(path, step);
     read_annotation(use == FileUse::mask      ? Part::mask
                     : use == FileUse::offsets ? Part::offsets
                                               : Part::trace,
@@ -339,6 +348,19 @@ void FileTaker::read_transfer_function(const std::filesystem::path& path, Step s
     const auto reading = [this, path, step, opening = desk_.openings](ProgressReporter&) {
         const auto read = std::make_shared<ReadFile>(
             ReadFile{.path = path, .opening = opening, .text = read_text(path, MAX_JSON_BYTES)});
+        return Jobs::Completion([this, read, step] { go_on_with(read, step); });
+    };
+    start_reading("reading " + short_name(path), path, step, reading);
+}
+
+/// Reads a mesh to the end, so that a broken one is refused before it is in the session.
+void FileTaker::read_mesh_file(const std::filesystem::path& path, Step step)
+{
+    const auto reading = [this, path, step, opening = desk_.openings](ProgressReporter& reporter) {
+        const size_t triangles =
+            read_mesh(path, uint64_t(import_budget(0)), reporter.begin("reading " + short_name(path))).triangles.size();
+        const auto read = std::make_shared<ReadFile>(
+            ReadFile{.path = path, .opening = opening, .triangles = triangles, .is_mesh = true});
         return Jobs::Completion([this, read, step] { go_on_with(read, step); });
     };
     start_reading("reading " + short_name(path), path, step, reading);
@@ -396,6 +418,9 @@ void FileTaker::show_preview(std::shared_ptr<const ReadFile> read)
         preview.notes = read->notes.losses;
         preview.notes.insert(preview.notes.end(), read->notes.remarks.begin(), read->notes.remarks.end());
         if (read->looks != read->groups) preview.notes.emplace_back("its names and colours of groups are taken, too");
+    } else if (read->is_mesh) {
+        preview.is_mesh = true;
+        preview.changes = sentence("Its ", read->triangles, " triangles would be shown with the scan.");
     } else {
         preview.changes = is_look(read->text, read->path.string())
                               ? "Names and colours of groups, the light and the transfer function would be replaced."
@@ -416,12 +441,21 @@ void FileTaker::show_next_preview()
     }
 }
 
+/// Makes what was loaded into these sections of the settings a step of the history.
+void FileTaker::record_loaded(std::initializer_list<std::string_view> sections)
+{
+    if (options_.is_script)
+        document_->record_sections(sections);
+    else
+        others_.record_settings();
+}
+
 void FileTaker::load_transfer_function(const ReadFile& read)
 {
     if (is_look(read.text, read.path.string())) {
         const NamedLook look = parse_look(read.text, read.path.stem().string(), read.path.string());
         others_.take_session(with_look(document_->session, look, document_->statistics));
-        others_.record_settings();
+        record_loaded({"transfer_function", "groups", "light"});
         return say("Loaded the look of " + read.path.string() + "; undo takes it back");
     }
     if (is_preset(read.text, read.path)) {
@@ -432,14 +466,29 @@ void FileTaker::load_transfer_function(const ReadFile& read)
     } else {
         others_.set(Set{patch_of("transfer_function=" + read.text)});
     }
-    others_.record_settings();
+    record_loaded({"transfer_function"});
     say("Loaded the transfer function of " + read.path.string() + "; undo takes it back");
+}
+
+void FileTaker::add_mesh(const std::filesystem::path& path)
+{
+    const std::string name = mesh_file_name(document_->session, path);
+    const std::vector<MeshLook>& meshes = document_->session.meshes;
+    if (std::ranges::find(meshes, name, &MeshLook::file) != meshes.end())
+        return say(path.string() + " is shown already; the panel Meshes lists it");
+    if (meshes.size() == MAX_SESSION_MESHES)
+        fail(path.string(), ": the scan has ", MAX_SESSION_MESHES,
+             " meshes already; expected fewer, so remove one in the panel Meshes first");
+    others_.set(edited(document_->session, [&](Session& s) { s.meshes.push_back({.file = name}); }));
+    record_loaded({"meshes"});
+    say(sentence("Shown: the mesh ", path.string(), "; undo takes it back"));
 }
 
 /// Adds the data that was read as one history step. For a mask, the step includes names and colours of groups that the
 /// mask file states and the session lacks.
 void FileTaker::load(const ReadFile& read)
 {
+    if (read.is_mesh) return add_mesh(read.path);
     if (!read.part) return load_transfer_function(read);
     const std::string path = read.path.string();
     const char* const name = name_of(*read.part);

@@ -2,6 +2,8 @@
 // Opens, describes or takes files, including files dropped onto the window. Decides by content which kind a file is.
 
 #include <deque>
+#include <initializer_list>
+#include <string_view>
 
 #include "engine/tasks/file_content.h"
 #include "engine/workbench/desk/service.h"
@@ -52,6 +54,9 @@ private:
     void take_as(FileUse use, const std::filesystem::path& path, Step step = Step::load);
     void load_by_contents(const std::filesystem::path& path, Step step);
     void read_transfer_function(const std::filesystem::path& path, Step step);
+    void read_mesh_file(const std::filesystem::path& path, Step step);
+    void record_loaded(std::initializer_list<std::string_view> sections);
+    void add_mesh(const std::filesystem::path& path);
     void read_annotation(Part part, const std::filesystem::path& path, Step step);
     void take_together(std::vector<std::filesystem::path> paths, Step step);
     void go_on_with(std::shared_ptr<const ReadFile> read, Step step);

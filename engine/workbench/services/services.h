@@ -10,6 +10,7 @@
 #include "engine/workbench/desk/window_state.h"
 #include "engine/workbench/services/file_taker.h"
 #include "engine/workbench/services/hand.h"
+#include "engine/workbench/services/meshes/mesh_shower.h"
 #include "engine/workbench/services/opener.h"
 #include "engine/workbench/services/operations/group_editor.h"
 #include "engine/workbench/services/painter.h"
@@ -153,6 +154,7 @@ struct Services {
                  .is_discarded = [this] { return settings.is_discarded(); },
                  .advance_jobs = [this] { tasks.advance(); },
                  .look_again = [this] { viewer.look_again(); }}};
+    MeshShower meshes{desk, {.look_again = [this] { viewer.look_again(); }}};
     Hand hand{desk,
               keeper,
               {.look_from = [this](const Camera& camera) { viewer.look_from(camera); },
@@ -166,7 +168,7 @@ struct Services {
     Kind& of()
     {
         return std::get<Kind&>(std::tie(keeper, presets, looks, window, photographer, viewer, settings, reader, painter,
-                                        prober, groups, tracer, taker, opener, reloader, tasks, saver, hand));
+                                        prober, groups, tracer, taker, opener, reloader, tasks, saver, meshes, hand));
     }
 };
 

@@ -1,4 +1,5 @@
 """The line "load" of scripts: a mask, offsets, a trace and a transfer function are added as steps that can be undone."""
+import json
 import unittest
 
 from harness import CliTest, Volume
@@ -49,6 +50,23 @@ class Load(CliTest):
         self.annotate({"op": "undo"}, {"op": "expect", "voxels_with_offset": 0, "voxels_in_group": {"3": painted}},
                       {"op": "save"})
         self.assertEqual((self.folder / "paint.mask").read_bytes(), self.groups)
+
+    # Kind (bad input and lost work): a script that loads settings, which scripts otherwise do not change
+    def test_a_transfer_function_is_loaded_kept_and_undone(self):
+        curve = {"points": [{"intensity": 1, "color": "#000000", "opacity": 0},
+                            {"intensity": 90, "color": "#ff0000", "opacity": 1}]}
+        (self.folder / "curve.json").write_text(json.dumps(curve))
+
+        def drawn(*arguments):
+            picture = self.folder / "picture.png"
+            self.check("render", self.session, "-o", picture, "--size", "24x24", "--camera", "front", *arguments)
+            return picture.read_bytes()
+        before, red = drawn(), drawn("--set", "transfer_function=" + json.dumps(curve))
+        self.assertNotEqual(before, red)
+        self.annotate({"op": "load", "path": self.path("curve.json")}, {"op": "save"})
+        self.assertEqual(drawn(), red)
+        self.annotate({"op": "undo"})
+        self.assertEqual(drawn(), before)
 
     def test_names_of_groups_come_with_a_mask_and_go_with_it(self):
         voxels = bytes(1 if i < 30 else 0 for i in range(VOXELS))

@@ -25,11 +25,9 @@ namespace {
 constexpr const char* TITLE = "Load annotation";
 constexpr size_t MAX_ROWS_SHOWN = 12;  ///< the table scrolls beyond
 
-constexpr std::pair<FileUse, const char*> USES[] = {{FileUse::by_contents, "as it states"},
-                                                    {FileUse::mask, "mask"},
-                                                    {FileUse::offsets, "offsets"},
-                                                    {FileUse::trace, "trace"},
-                                                    {FileUse::look, "transfer function"}};
+constexpr std::pair<FileUse, const char*> USES[] = {{FileUse::by_contents, "as it states"}, {FileUse::mask, "mask"},
+                                                    {FileUse::offsets, "offsets"},          {FileUse::trace, "trace"},
+                                                    {FileUse::look, "transfer function"},   {FileUse::mesh, "mesh"}};
 
 struct AnnotationDialog {
     std::string path;  ///< as typed
@@ -49,7 +47,8 @@ AnnotationDialog asking;
 
 FileUse use_of(const LoadPreview& preview)
 {
-    return !preview.part                    ? FileUse::look
+    return preview.is_mesh                  ? FileUse::mesh
+           : !preview.part                  ? FileUse::look
            : *preview.part == Part::mask    ? FileUse::mask
            : *preview.part == Part::offsets ? FileUse::offsets
                                             : FileUse::trace;
