@@ -4,6 +4,7 @@ import re
 import shutil
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
@@ -12,6 +13,7 @@ from harness import ENVIRONMENT, SHVR, TIMEOUT_S, CliTest  # noqa: E402
 ROOT = Path(__file__).resolve().parents[3]
 OTHER_BUILD = ROOT / "build" / "mpi"  # made by these tests, unless SHVR is a build with MPI
 SKIPPED = 77
+PATIENCE_S = 20  # for ranks that mpirun has told to end
 
 # OpenMPI as it is installed refuses root and more processes than cores. It is told so by its own variables.
 ENVIRONMENT_OF_RANKS = {**ENVIRONMENT, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
@@ -67,6 +69,24 @@ class RanksTest(CliTest):
             except OSError:
                 pass  # it has ended meanwhile
         return None
+
+    def processes(self):
+        """mpirun and ranks: the command lines that name a file of this test."""
+        found = []
+        for folder in Path("/proc").iterdir():
+            try:
+                words = (folder / "cmdline").read_bytes().decode(errors="replace").split("\0")
+            except OSError:
+                continue  # it has ended meanwhile, or is no process
+            if any(word.startswith(str(self.folder)) for word in words):
+                found.append(" ".join(words))
+        return found
+
+    def check_no_process_is_left(self):
+        end = time.monotonic() + PATIENCE_S
+        while self.processes():
+            self.assertLess(time.monotonic(), end, self.processes())
+            time.sleep(0.05)
 
     def temporary_files(self):
         return [name for name in os.listdir(self.folder) if name.startswith(".shvr-")]

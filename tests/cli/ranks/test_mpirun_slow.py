@@ -11,7 +11,7 @@ PAGED = ["--set", "render.paging=always", "--budget-device", "32", "--budget-hos
 
 
 class Mpirun(RanksTest):
-    COUNTS = (1, 2, 3, 5)
+    COUNTS = (1, 2, 3, 4, 5)
 
     def setUp(self):
         super().setUp()
@@ -74,22 +74,24 @@ class Mpirun(RanksTest):
         while process.poll() is None and not self.temporary_files():
             os.sched_yield()
         self.assertIsNone(process.poll(), "mpirun ended before the picture was begun")
+        self.assertEqual(len(self.processes()), 4, self.processes())  # mpirun and three ranks
         os.kill(self.process_of(process.pid, rank), number)
         told, errors = process.communicate()
         self.assertNotEqual(process.returncode, 0)
         self.assertEqual(told, "")
+        self.check_no_process_is_left()
         self.assertEqual(output.read_bytes(), b"old")
         self.assertEqual(self.temporary_files(), [])
         return errors
 
-    def test_a_killed_rank_ends_the_picture_with_a_message_and_no_half_file(self):
+    def test_a_killed_rank_ends_the_picture_with_a_message_and_leaves_no_file_or_process(self):
         for rank in (1, 2):
             with self.subTest(rank=rank):
                 lines = lines_of_shvr(self.kill(rank, signal.SIGKILL))
                 self.assertEqual(len(lines), 1, lines)
                 self.assertIn("a rank is lost; no file is left half written", lines[0])
 
-    def test_a_killed_rank_0_leaves_no_file(self):
+    def test_a_killed_rank_0_leaves_no_file_or_process(self):
         # Only mpirun is left to say so.
         errors = self.kill(0, signal.SIGKILL)
         self.assertEqual(lines_of_shvr(errors), [])
