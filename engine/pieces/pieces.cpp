@@ -23,6 +23,9 @@ namespace fs = std::filesystem;
 
 constexpr int64_t MAX_MANIFEST_BYTES = int64_t{64} << 20;
 constexpr const char* SUFFIX = ".pieces";
+/// Headers whose voxels may be in another file, and how the names of such files go on after the header's stem.
+constexpr std::string_view HEADERS[] = {".nhdr", ".mhd", ".hdr"};
+constexpr std::string_view VOXEL_FILES[] = {".raw", ".img", ".zraw", ".bin", ".dat"};
 
 std::string text_of(const PieceManifest& manifest)
 {
@@ -71,6 +74,20 @@ std::string signature_of_file(const fs::path& path)
     return sentence(path.string(), " ", status.st_size, " ", status.st_mtim.tv_sec, ".", status.st_mtim.tv_nsec);
 }
 
+/// Returns the files that may hold a header's voxels: headers are not read here.
+std::vector<fs::path> voxel_files_of(const fs::path& header)
+{
+    std::vector<fs::path> files;
+    if (std::ranges::find(HEADERS, header.extension().string()) == std::end(HEADERS)) return files;
+    for (const std::string_view extension : VOXEL_FILES)
+        for (const char* const packed : {"", ".gz", ".bz2"}) {
+            const fs::path file = header.parent_path() / sentence(header.stem().string(), extension, packed);
+            std::error_code ignored;
+            if (fs::exists(file, ignored)) files.push_back(file);
+        }
+    return files;
+}
+
 }  // namespace
 
 Pieces Pieces::of_output(const fs::path& output)
@@ -116,9 +133,9 @@ void Pieces::begin(const PieceManifest& manifest) const
     }
     const PieceManifest found = this->manifest();
     if (found.tasks != manifest.tasks)
-        fail(manifest_path().string(), ": the job is split into ", found.tasks, " tasks, and this is one of ",
-             manifest.tasks, "; expected the same number in all: --task I/", found.tasks, ", or remove ",
-             folder_.string(), " to start over");
+        fail(manifest_path().string(), ": the job is split into ", counted(found.tasks, "task"),
+             ", and this is one of ", manifest.tasks, "; expected the same number in all: --task I/", found.tasks,
+             ", or remove ", folder_.string(), " to start over");
     expect_equal(found, manifest);
 }
 
@@ -193,8 +210,12 @@ std::vector<std::string> input_signatures(const fs::path& path)
     std::error_code ignored;
     if (path.empty()) return {};
     if (path.string().find("://") != std::string::npos) return {path.string()};
-    if (!fs::is_directory(path, ignored)) return {signature_of_file(path)};
     std::vector<std::string> lines;
+    if (!fs::is_directory(path, ignored)) {
+        lines.push_back(signature_of_file(path));
+        for (const fs::path& file : voxel_files_of(path)) lines.push_back(signature_of_file(file));
+        return lines;
+    }
     for (const fs::directory_entry& entry : fs::directory_iterator(path, ignored))
         if (!entry.is_directory(ignored)) lines.push_back(signature_of_file(entry.path()));
     std::ranges::sort(lines);

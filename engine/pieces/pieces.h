@@ -65,8 +65,8 @@ private:
     std::filesystem::path folder_;
 };
 
-/// Returns lines that change if a file is replaced or written to, or for a folder one of the files directly in it; for
-/// an address, the address alone.
+/// Returns lines that change if a file, or a file of voxels next to a header, is replaced or written to; for a folder,
+/// one of the files directly in it; for an address, the address alone.
 std::vector<std::string> input_signatures(const std::filesystem::path& path);
 
 }  // namespace shvr

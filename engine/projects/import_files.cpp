@@ -296,7 +296,7 @@ std::string import_session()
 }
 
 std::string import_identity(const VolumeSource& source, const fs::path& origin, const ImportOptions& options,
-                            const char* way)
+                            const char* way, bool is_split)
 {
     const VolumeInfo& info = source.info();
     const auto list = [](const auto& vector) { return Json{vector.x, vector.y, vector.z}; };
@@ -321,8 +321,7 @@ std::string import_identity(const VolumeSource& source, const fs::path& origin, 
                        options.compressor.shuffle}},
                      {"version", sentence(spelled(options.version.value_or(OmeZarrVersion::v0_4)),
                                           options.has_shards ? " in shards" : "")}};
-    // A volume on another machine may change unnoticed: random numbers make each import unique, so none is resumed.
-    if (leads_to_network(origin)) document["once"] = {std::random_device{}(), std::random_device{}()};
+    if (leads_to_network(origin) && !is_split) document["once"] = {std::random_device{}(), std::random_device{}()};
     return document.dump(-1, ' ', true, Json::error_handler_t::replace);
 }
 

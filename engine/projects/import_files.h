@@ -41,8 +41,9 @@ OmeZarrVersion label_image_version(const std::filesystem::path& target, std::opt
 void list_label_image(const std::filesystem::path& target, OmeZarrVersion version);
 
 /// Returns a text that is equal for imports with equal results: the source (with names, sizes and times of its files),
-/// the processing, and `way`: how the pass visits the voxels, on which the saved state depends.
+/// the processing, and `way`: how the pass visits the voxels, on which the saved state depends. A volume on another
+/// machine may change unnoticed: its identity is new each time, so that nothing is resumed, unless it `is_split`.
 std::string import_identity(const VolumeSource& source, const std::filesystem::path& origin,
-                            const ImportOptions& options, const char* way);
+                            const ImportOptions& options, const char* way, bool is_split);
 
 }  // namespace shvr

@@ -88,9 +88,9 @@ public:
           plan_(plan),
           preparation_(make_preparation(source, options.preparation, looking(options))),
           info_(preparation_->info()),
-          identity_(options.label_image
-                        ? std::string()
-                        : import_identity(source, origin_, options, plan.stored ? "stored chunks" : "all voxels")),
+          identity_(options.label_image ? std::string()
+                                        : import_identity(source, origin_, options,
+                                                          plan.stored ? "stored chunks" : "all voxels", joins || task)),
           task_(task),
           joins_(joins),
           folder_(project, options.overwrites && !task),
@@ -194,7 +194,11 @@ private:
     }
 
     /// Label images are never resumed, since no file would show that their source has changed in between.
-    bool is_resumable() const { return !options_.label_image && options_.gaps == nullptr && !joins_; }
+    bool is_resumable() const
+    {
+        const bool may_change = task_ && leads_to_network(origin_);
+        return !options_.label_image && options_.gaps == nullptr && !joins_ && !may_change;
+    }
     bool is_state_due() const
     {
         return is_resumable() && seconds_since(state_written_) >= STATE_INTERVAL * state_seconds_;
@@ -425,8 +429,9 @@ ImportReport import_volume(const VolumeSource& source, const fs::path& origin, c
     if (options.halving == Halving::label) check_labels(source.info(), options.preparation);
     const ImportPlan plan = plan_import(source, project, options);
     Import job(source, origin, project, options, plan);
-    const char* const goes_on = options.gaps == nullptr ? ", and the same command goes on from there; rm -r removes it"
-                                                        : ", and is of no further use; rm -r removes it";
+    const bool is_resumed = options.gaps == nullptr && !leads_to_network(origin);
+    const char* const goes_on = is_resumed ? ", and the same command goes on from there; rm -r removes it"
+                                           : ", and is of no further use; rm -r removes it";
     const fs::path part = job.folder();
     try {
         return job.run();
@@ -445,13 +450,14 @@ void import_piece(const VolumeSource& source, const fs::path& origin, const fs::
     const ImportPlan plan = plan_import(source, piece, options);
     Import job(source, origin, piece, options, plan, task);
     const fs::path part = job.folder();
+    const char* const goes_on = leads_to_network(origin) ? "the same task begins again"
+                                                         : "what is done is kept, and the same task goes on from there";
     try {
         job.make_piece();
     } catch (const ImportStopped&) {
-        throw ImportStopped(sentence(part.string(), ": the task was stopped; what is done is kept, and the same task ",
-                                     "goes on from there"));
+        throw ImportStopped(sentence(part.string(), ": the task was stopped; ", goes_on));
     } catch (const Error& error) {
-        fail(error.what(), "; what is done is kept in ", part.string(), ", and the same task goes on from there");
+        fail(error.what(), "; ", part.string(), ": ", goes_on);
     }
 }
 

@@ -108,7 +108,7 @@ void remove_content(const fs::path& folder)
 PartFolder::PartFolder(const fs::path& target, bool overwrites)
     : target_(plain_path(target)), part_(with_suffix(target_, ".part")), overwrites_(overwrites)
 {
-    refuse_target();
+    check_target(target_, overwrites_);
     if (!is_there(part_)) make_folder(part_);
     lock_.emplace(locked(part_));
     // A folder that has this name by chance must stay. A folder left by an import has a state, or only the folder shvr.
@@ -127,15 +127,20 @@ fs::path PartFolder::state() const
     return part_ / "shvr" / "import.state";
 }
 
-void PartFolder::refuse_target() const
+bool is_target_taken(const fs::path& target)
 {
-    if (!is_there(target_) || is_empty_folder(target_)) return;
-    if (!overwrites_) fail(target_.string(), ": already exists; expected a new name, or --overwrite");
-    if (!is_zarr(target_))
-        fail(target_.string(),
+    return is_there(plain_path(target)) && !is_empty_folder(plain_path(target));
+}
+
+void check_target(const fs::path& target, bool overwrites)
+{
+    if (!is_target_taken(target)) return;
+    if (!overwrites) fail(target.string(), ": already exists; expected a new name, or --overwrite");
+    if (!is_zarr(target))
+        fail(target.string(),
              ": is not a project; expected one, since --overwrite replaces nothing else: choose a new name");
-    if (const std::vector<std::string> foreign = entries_foreign_to_zarr(target_); !foreign.empty())
-        fail(target_.string(), ": holds ", in_words(foreign),
+    if (const std::vector<std::string> foreign = entries_foreign_to_zarr(target); !foreign.empty())
+        fail(target.string(), ": holds ", in_words(foreign),
              ", no part of a project; expected nothing else there, since --overwrite removes the whole folder: move "
              "that, "
              "or choose a new name");
@@ -163,8 +168,8 @@ void PartFolder::sync() const
 void PartFolder::finish()
 {
     sync();
-    refuse_target();  // checks again, since the target may have appeared meanwhile
-    if (is_there(target_) && !is_empty_folder(target_)) {
+    check_target(target_, overwrites_);  // checks again, since the target may have appeared meanwhile
+    if (is_target_taken(target_)) {
         // Exchanges the two names atomically, so that either the old or the new project is in place at every moment.
         if (::renameat2(AT_FDCWD, part_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0) {
             refuse_write(target_, errno);

@@ -39,12 +39,15 @@ public:
     void abandon();
 
 private:
-    void refuse_target() const;
-
     std::filesystem::path target_, part_;
     bool overwrites_;
     std::optional<FileDescriptor> lock_;
 };
+
+/// Whether something other than an empty folder is at the path.
+bool is_target_taken(const std::filesystem::path& target);
+/// Fails if PartFolder would refuse a target with this path because of what is there.
+void check_target(const std::filesystem::path& target, bool overwrites);
 
 /// Returns the path without ".", ".." and trailing slash: a path with a slash at its end would be its own parent.
 std::filesystem::path plain_path(const std::filesystem::path& path);

@@ -8,6 +8,7 @@
 #include "engine/annotation/writers/hold.h"
 #include "engine/base/text.h"
 #include "engine/projects/import_piece.h"
+#include "engine/projects/part_folder.h"
 #include "engine/remote/address.h"
 #include "engine/tasks/import_estimate.h"
 #include "engine/tasks/task_parts.h"
@@ -260,6 +261,7 @@ void run_part(const ImportTask& task, const TaskChoice& choice, const std::files
               ProgressReporter& reporter)
 {
     check_part(task);
+    check_target(task.project, task.overwrite);  // which joining would refuse, after all tasks
     static_cast<void>(timed(task, reporter, [&](const VolumeSource& source, const ImportOptions& options) {
         import_piece(source, task.volume, piece, options, choice);
         return ImportReport{.info = source.info()};
@@ -270,6 +272,10 @@ ImportResult join_parts(const ImportTask& task, const std::vector<std::filesyste
                         ProgressReporter& reporter)
 {
     check_part(task);
+    if (!task.overwrite && is_target_taken(task.project))
+        fail(task.project.string(),
+             ": already exists, as it does once the pieces are joined; expected no such folder: remove it to join them "
+             "again");
     const std::shared_ptr<Hold> hold = hold_replaced(task);
     return timed(task, reporter, [&](const VolumeSource& source, const ImportOptions& options) {
         return join_import(source, task.volume, task.project, options, pieces);

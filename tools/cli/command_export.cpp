@@ -141,6 +141,12 @@ Json joined(const SplitJob& job)
             fail(piece.string(),
                  ": is not the piece of a task of shvr export; expected one: remove it, and run the "
                  "task again");
+        for (const Json& file : told["written"]) {
+            std::error_code ignored;
+            if (std::filesystem::exists(file.get<std::string>(), ignored)) continue;
+            fail(file.get<std::string>(), ": is missing, and ", piece.string(),
+                 " states that a task has written it; expected it: remove the piece, and run its task again");
+        }
         if (all.is_null()) {
             all = told;
             continue;

@@ -5,11 +5,15 @@ import shutil
 import signal
 import struct
 import subprocess
+import sys
 import unittest
 from pathlib import Path
 
 from harness import ENVIRONMENT, IS_SLOW, SHVR, Volume
-from tasks import SplitTest
+from tasks import SplitTest, files_below
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "remote"))
+from store_server import StoreServer  # noqa: E402
 
 
 class ImportTasks(SplitTest):
@@ -90,16 +94,56 @@ class ImportTasks(SplitTest):
         self.check(*arguments)
         self.assert_equal_files(output, whole)
 
+    def test_a_project_that_is_in_the_way_is_refused_before_the_work_and_after_it(self):
+        arguments = self.import_of(self.write_volume((20, 17, 130)), "project")
+        self.tasks(2, *arguments)
+        self.gather(self.folder / "project")
+        self.tasks(2, *arguments)  # all is done
+        self.check_refused("gather", self.folder / "project", status=1,
+                           says=["project: already exists", "once the pieces are joined", "remove it"])
+        shutil.rmtree(self.folder / "project.pieces")
+        self.check_refused(*arguments, "--task", "0/2", status=1, says=["project: already exists", "--overwrite"])
+        self.assertFalse((self.folder / "project.pieces" / "piece-0").exists())
+        before = files_below(self.folder / "project")
+        shutil.rmtree(self.folder / "project.pieces")
+        self.tasks(2, *arguments, "--overwrite")
+        for _ in range(2):
+            self.gather(self.folder / "project")
+        self.assertEqual(files_below(self.folder / "project"), before)
+
+    def test_a_volume_at_an_address_is_split(self):
+        volume = self.write_volume((90, 80, 400))
+        served = self.folder / "served"
+        served.mkdir()
+        self.check(*self.import_of(volume, "served/x"), "--quiet")
+        shutil.rmtree(served / "x" / "shvr")  # an image that is no project, and states no statistics
+        with StoreServer(served) as server:
+            address, output = server.address("x"), self.folder / "project"
+            self.check("import", address, output, "--quiet")
+            output.rename(self.folder / "whole")
+            arguments = ["import", address, output]
+            self.tasks(3, *arguments, order=(2, 0))
+            process = subprocess.Popen([SHVR, *map(str, arguments), "--task", "1/3", "--quiet"], env=ENVIRONMENT,
+                                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            part = Path(f"{output}.pieces") / "piece-1.part" / "0"
+            while process.poll() is None and not part.exists():
+                pass
+            process.kill()
+            process.wait()
+            self.tasks(3, *arguments, order=(1,))
+            self.gather(output)
+        self.assert_equal_files(output, self.folder / "whole")
+
     def test_a_changed_source_and_incomplete_volumes_are_refused(self):
         volume = self.write_volume((20, 20, 130))
         self.check_refused(*self.import_of(volume, "project", "--allow-incomplete", "--task", "0/2"), status=2,
                            says=["--allow-incomplete"])
         self.assertFalse((self.folder / "project.pieces").exists())
         self.tasks(2, *self.import_of(volume, "project"))
-        # The voxels are another file, which the manifest does not know; the pieces do.
+        # The voxels are in another file than the header.
         data = self.folder / "volume.raw"
         data.write_bytes(struct.pack("B", 77) + data.read_bytes()[1:])
-        self.check_refused("gather", self.folder / "project.pieces", status=1, says=["piece-0", "another file"])
+        self.check_refused("gather", self.folder / "project.pieces", status=1, says=["volume.raw", "to start over"])
         self.assertFalse((self.folder / "project").exists())
         self.assertFalse((self.folder / "project.part").exists())
         manifest = json.loads((self.folder / "project.pieces" / "manifest.json").read_text())

@@ -59,8 +59,8 @@ class OtherTasks(SplitTest):
             {"op": "node", "at": [2, 2, 2], "radius": 1, "group": 2}, {"op": "node", "at": [9, 7, 5], "radius": 1},
             {"op": "save"}]))
 
-        def export(name):
-            (self.folder / name).mkdir()
+        def export(name, exists=False):
+            (self.folder / name).mkdir(exist_ok=exists)
             return ["export", project, "--mask", self.folder / name / "m.mask", "--trace",
                     self.folder / name / "t.graphml", "--mesh", self.folder / name / "t.ply", "--metrics",
                     self.folder / name / "m.csv"]
@@ -73,6 +73,16 @@ class OtherTasks(SplitTest):
                 self.assertEqual(told[key], whole[key])
             self.assert_equal_files(self.folder / f"of-{of}", self.folder / "whole")
         self.check_refused("export", project, "--task", "0/2", status=2, says=["--mask"])
+        # A file that was removed since is missing.
+        self.tasks(2, *export("lost"))
+        trace = self.folder / "lost" / "t.graphml"
+        trace.unlink()
+        said = self.check_refused("gather", self.folder / "lost" / "m.mask", status=1, says=["t.graphml: is missing"])
+        piece = self.folder / "lost" / "m.mask.pieces" / ("piece-0" if "piece-0 " in said else "piece-1")
+        piece.unlink()
+        self.tasks(2, *export("lost", exists=True))
+        self.gather(self.folder / "lost" / "m.mask", "--remove")
+        self.assert_equal_files(self.folder / "lost", self.folder / "whole")
 
     def test_a_study_is_gathered_and_a_repeated_task_keeps_what_it_made(self):
         conditions = self.folder / "conditions.csv"

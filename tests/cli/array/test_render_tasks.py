@@ -3,7 +3,7 @@ import signal
 import unittest
 from pathlib import Path
 
-from harness import IS_SLOW
+from harness import IS_SLOW, Volume
 from tasks import SplitTest
 
 
@@ -74,6 +74,13 @@ class RenderTasks(SplitTest):
         self.tasks(2, *arguments, order=(0,))
         self.session.write_text(self.session.read_text() + "\n")
         self.check_refused(*arguments, "--task", "1/2", status=1, says=["session.json", "start over"])
+        # The voxels of a header.
+        header = Volume.noise((12, 10, 8), seed=4).write(self.folder)
+        arguments = ["render", header, "-o", self.folder / "noise.png", "--size", "16x12"]
+        self.tasks(2, *arguments, order=(0,))
+        data = self.folder / "volume.raw"
+        data.write_bytes(bytes(len(data.read_bytes())))
+        self.check_refused(*arguments, "--task", "1/2", status=1, says=["volume.raw", "start over"])
         # A manifest from elsewhere does not decide where a picture is written.
         other = self.folder / "other.pfm.pieces"
         (self.folder / "picture.pfm.pieces").rename(other)
