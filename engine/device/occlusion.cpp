@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/device/look_table.h"
+#include "engine/look/split_digits.h"
 #include "engine/passes/occlusion_stretch.h"
 #include "engine/volume/grid.h"
 
@@ -475,7 +476,9 @@ OcclusionCellsInput Occlusion::cells_input(int level, double stretch, const std:
     glm::dvec2 sums(0.0);
     for (const glm::vec4& entry : bake_table(look_->function, stretch, range.samples).looks) {
         const double opacity = double(entry.a);
-        input.opacities.push_back({entry.a, glm::vec2(sums), glm::vec2(sums - glm::dvec2(glm::vec2(sums)))});
+        glm::vec2 whole, rest;
+        split_digits(sums, whole, rest);
+        input.opacities.push_back({entry.a, whole, rest});
         sums += glm::dvec2(opacity, opacity * opacity);
     }
     input.mask = mask;

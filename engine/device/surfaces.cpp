@@ -5,6 +5,8 @@
 #include <memory>
 #include <utility>
 
+#include "engine/look/split_digits.h"
+
 namespace shvr {
 
 namespace {
@@ -103,8 +105,7 @@ gpu::SurfaceParams surface_params(const RayPlanes& planes, const glm::uvec2& pix
     const glm::dvec3 origin = corner + 0.5 * (double(pixels.x) * dx + double(pixels.y) * dy);
     const glm::dvec3 along = scale * (planes.far_corner - planes.near_corner);
     gpu::SurfaceParams params{};
-    params.origin = origin;
-    params.origin_rest = origin - glm::dvec3(params.origin);
+    split_digits(origin, params.origin, params.origin_rest);
     params.middle_corner = corner - origin;
     params.middle_dx = dx;
     params.middle_dy = dy;

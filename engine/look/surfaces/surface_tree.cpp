@@ -6,6 +6,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/finite.h"
+#include "engine/look/split_digits.h"
 #include "engine/look/surfaces/box_tree.h"
 #include "engine/volume/grid.h"
 
@@ -59,8 +60,7 @@ gpu::Surface on_device(const SurfaceLook& look, uint64_t key, double reference_l
         radius_from = radius_to = std::max(radius_from, radius_to);
     }
     gpu::Surface surface{};
-    surface.from = from;
-    surface.from_rest = from - glm::dvec3(surface.from);
+    split_digits(from, surface.from, surface.from_rest);
     surface.along = to - from;
     surface.radius_from = float(radius_from);
     surface.radius_to = float(radius_to);
