@@ -65,7 +65,7 @@ Resource surfaces(FrameGraph& graph, const SurfacesInput& input)
         }
     }
     Resource target = graph.create("surfaces", picture_desc(Format::rgba32_float, pixels));
-    const uint32_t rounds = std::min(blocks, input.max_rounds);
+    const uint32_t rounds = input.listed && input.listed->triangles ? std::min(blocks, input.max_rounds) : blocks;
     for (uint32_t round = 0; round < rounds; ++round) {
         part.scene.is_first_round = round == 0;
         part.scene.is_last_round = round + 1 == rounds;

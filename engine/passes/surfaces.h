@@ -23,8 +23,9 @@ struct SurfaceList {
 /// Tile lists add a few hundred iterations. A lower limit would cost more dispatches, and a dispatch that finds nothing
 /// still sets up every ray.
 inline constexpr uint32_t NODES_IN_DISPATCH = 60'000 / (2 + gpu::SURFACES_IN_LEAF);
-/// Maximum number of dispatches in which rays search the boxes. A ray along a sheet of a million triangles visits about
-/// 10,000 nodes; one that needs more than these rounds is counted as cut short.
+/// Maximum number of dispatches in which rays search the boxes of triangles. A ray along a sheet of a million triangles
+/// visits about 10,000 nodes; one that needs more than these rounds is counted as cut short. Balls and rods may lie in
+/// one row, so rays search their boxes in as many rounds as all nodes need.
 inline constexpr uint32_t MAX_SEARCH_ROUNDS = 6;
 
 struct SurfacesInput {
