@@ -209,6 +209,8 @@ class Widgets(Seen):
 
     def test_exact_integrals_are_switched_where_sampling_is_exact(self):
         self.open_panel("quality", render={"sampling": "exact"})
+        x, y = self.middle_of(self.see_at_rest("Narrow peaks"))
+        self.do("mousemove", x, y, *["click", 5] * 6, pause_s=0)   # scrolls the side panel
         for value in (True, False):
             before = len(self.settings())
             self.click_on("Exact integral")
