@@ -1,6 +1,7 @@
 """Files dropped onto the window as a file manager drops them, and the menu entry for who cannot: known by what is in
 them, whatever they are called."""
 import json
+import struct
 import unittest
 
 from seen import Seen
@@ -119,6 +120,30 @@ class Drop(Seen):
         self.wait_for_window("sphere.* - SHVR")
         report = self.finish()
         self.assertNotIn("Opened " + str(mask), "\n".join(report["messages"]))
+
+    def test_a_mask_of_too_many_labels_is_refused_in_the_dialog_with_their_number(self):
+        session = self.write_ball(volume={"procedural": "sphere", "size": [16, 16, 16]})
+        labels = self.folder / "labels.nrrd"
+        header = "NRRD0004\ntype: uint16\ndimension: 3\nsizes: 16 16 16\nencoding: raw\nendian: little\n\n"
+        labels.write_bytes(header.encode() + struct.pack("<4096H", *(voxel % 301 for voxel in range(4096))))
+        self.open_scan(session, preferences={"hints_seen": 3})
+        self.click_on("File", "##MainMenuBar")
+        self.click_on("Load annotation...", "##Menu_00")
+        self.see("Cancel", self.PREVIEW)
+        self.do("key", "ctrl+a", "type", "--delay", 20, labels, pause_s=0)
+        self.see(str(labels), self.PREVIEW)
+        self.click_on("mask", self.PREVIEW)
+
+        def is_told():   # in as many lines as the dialog's width asks for
+            said = " ".join(seen["text"] for seen in self.seen(window=self.PREVIEW))
+            return "holds 300 labels, the highest 300, of type uint16; expected at most 255 labels" in said
+        self.until(is_told, "number of the labels")
+        self.press("Enter")   # loads nothing
+        self.see_frames()
+        self.assertTrue(is_told())
+        self.click_on("Cancel", self.PREVIEW)
+        self.see_no_more("Cancel", self.PREVIEW)
+        self.assertEqual(self.finish()["voxels_in_group"], {})
 
     def test_a_preview_that_appears_long_after_the_last_event_is_laid_out(self):
         side = 320  # so that its preview takes longer than the interface is drawn after an event

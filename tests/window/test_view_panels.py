@@ -1,4 +1,4 @@
-"""Panels on what the workbench knows, by real keys: the palette, keys that are changed, and operations on groups."""
+"""Panels on what the workbench knows, by real keys: the palette, and keys that are changed."""
 import json
 import os
 import shutil
@@ -11,7 +11,6 @@ from seen import Seen
 
 DAB = {"op": "paint", "brush": "fill", "region": "ball", "path": [[32, 32, 32]], "radius": 5, "threshold": 0, "group": 3}
 PALETTE = "Find anything"
-OPERATIONS = "Operations on groups"
 
 
 class Panels(Seen):
@@ -148,116 +147,6 @@ class Panels(Seen):
         said = "\n".join(self.finish()["messages"])
         self.assertIn(f"open this page in a browser: {page}", said)
         self.assertIn(f"expected it at {page}", said)
-
-    def test_an_operation_is_previewed_and_carried_out(self):
-        self.open_scan(self.write_ball(), preferences={"hints_seen": 3})
-        x, y = self.middle()
-        self.check_probe(x, y)
-        self.check_stroke((x, y), (x + 20, y))
-        self.see("Painted ", "Status")
-        self.click_on("Edit", "##MainMenuBar")
-        self.click_on("Operations on groups...", "##Menu_00")
-        self.see("gives a group all voxels within a distance of it", OPERATIONS)
-        previewed = self.see("Grow: ", OPERATIONS)["text"]
-        self.assertIn(" painted in ", previewed)
-        self.click_on("Grow", OPERATIONS)
-        self.click_on("Shrink", "##Combo_00")
-        self.assertIn(" erased", self.see("Shrink: ", OPERATIONS)["text"])
-        self.click_on("Shrink", OPERATIONS)
-        self.click_on("Grow", "##Combo_00")
-        self.assertEqual(self.see("Grow: ", OPERATIONS)["text"], previewed)   # nothing was changed
-        self.click_on("Apply", OPERATIONS)
-        self.assertEqual(self.see("Grow: ", "Status")["text"], previewed)
-        self.press("Escape")
-        self.until(lambda: not self.seen(window=OPERATIONS), "closed window")
-
-    def choose_operation(self, title):
-        """In the window of operations, which shows Grow."""
-        self.click_on("Edit", "##MainMenuBar")
-        self.click_on("Operations on groups...", "##Menu_00")
-        self.see("gives a group all voxels within a distance of it", OPERATIONS)
-        self.click_on("Grow", OPERATIONS)
-        self.click_on(title, "##Combo_00")
-
-    def painted_scan(self):
-        self.open_scan(self.write_ball(), preferences={"hints_seen": 3})
-        x, y = self.middle()
-        self.check_probe(x, y)
-        self.check_stroke((x, y), (x + 20, y))
-        self.see("Painted ", "Status")
-        return x, y
-
-    def test_a_cut_is_drawn_in_the_picture_taken_back_and_carried_out(self):
-        x, y = self.painted_scan()
-        self.choose_operation("Cut by an outline")
-        self.see("draw an outline", OPERATIONS)
-        around = [(x - 80, y - 80), (x + 100, y - 80), (x + 100, y + 80), (x - 80, y + 80)]
-        self.do("keydown", "ctrl", pause_s=0)
-        self.check_drag(around[0], [around[2]], "preview_operation")   # a rectangle
-        self.do("keyup", "ctrl", pause_s=0)
-        previewed = self.see("Cut by an outline: ", OPERATIONS)["text"]
-        self.assertIn(" erased", previewed)
-        self.assertEqual(len(json.loads(self.done()[-1]["operation"])["polygon"]), 4)
-        self.check_key("Escape", "preview_operation")                  # takes the outline away, not the window
-        self.assertNotIn("operation", self.done()[-1])
-        self.see("draw an outline", OPERATIONS)
-        self.check_drag(around[0], around[1:], "preview_operation")    # a lasso
-        self.assertEqual(self.see("Cut by an outline: ", OPERATIONS)["text"], previewed)
-        self.check_key("Enter", "lasso")
-        self.assertEqual(self.see("Cut by an outline: ", "Status")["text"], previewed)
-        line = next(each for each in self.done() if each["op"] == "lasso")
-        self.assertEqual(line["camera"]["projection"], "perspective")
-        self.assertGreater(len(line["polygon"]), 3)
-        self.see("draw an outline", OPERATIONS)
-        self.check_key("Escape", "show_dialog")
-        self.until(lambda: not self.seen(window=OPERATIONS), "closed window")
-
-    def choose_of(self, row, present, wanted):
-        """In a list, from the words of its row."""
-        word = self.see(row, OPERATIONS)
-        self.do("mousemove", word["box"][0] + 9 * 14 + 60, self.middle_of(word)[1], "click", 1, pause_s=0)
-        self.see(wanted, "##Combo_00")
-        self.click_on(wanted, "##Combo_00")
-
-    def previewed(self):
-        """The operation that was previewed last."""
-        lines = [line for line in self.done() if line["op"] == "preview_operation" and "operation" in line]
-        return json.loads(lines[-1]["operation"])
-
-    def test_every_limit_of_scripts_limits_the_preview(self):
-        self.painted_scan()
-        self.choose_operation("Grow")
-        whole = self.see("Grow: ", OPERATIONS)["text"]
-        self.click_on("Only unpainted voxels", OPERATIONS)
-        self.until(lambda: self.previewed().get("only_unpainted") is True, "only unpainted voxels")
-        self.choose_of("Only in", "any group", "0  unpainted")
-        self.until(lambda: self.previewed().get("inside") == 0, "inside unpainted voxels")
-        self.choose_of("Where", "the whole scan", "a box")
-        self.until(lambda: len(self.previewed().get("box", [])) == 6, "a box")
-        word = self.see_at_rest("Intensities", OPERATIONS)   # its check box, which the box's rows have moved
-        self.do("mousemove", word["box"][0] + 9 * 14 + 8, self.middle_of(word)[1], pause_s=0)
-        self.see_frames()
-        self.do("click", 1, pause_s=0)
-        self.until(lambda: self.previewed().get("within") == [0, 0], "an intensity range")
-        self.until(lambda: self.see("Grow: ", OPERATIONS)["text"] != whole, "another count")
-
-    def test_a_click_says_which_part_is_kept(self):
-        x, y = self.painted_scan()
-        self.choose_operation("Islands")
-        self.see("Islands: ", OPERATIONS)                       # a preview of a valid suggestion
-        self.choose_of("Keep", "the largest part", "the part that is clicked")
-        self.see("click the part to keep", OPERATIONS)
-        self.check_follows(lambda: self.do("mousemove", x + 10, y, "click", 1, pause_s=0), "preview_operation")
-        self.assertEqual(len(self.previewed()["at"]), 3)
-        self.see("Islands: ", OPERATIONS)
-
-    def test_the_preview_of_growing_from_seeds_follows_each_stroke(self):
-        x, y = self.painted_scan()
-        self.choose_operation("Grow from seeds")
-        previewed = self.see("Grow from seeds: ", OPERATIONS)["text"]
-        self.assertIn(" painted in ", previewed)
-        self.check_follows(lambda: self.stroke((x - 20, y), (x - 25, y), pause_s=0), "preview_operation")
-        self.until(lambda: self.see("Grow from seeds: ", OPERATIONS)["text"] != previewed, "renewed preview")
 
 
 if __name__ == "__main__":

@@ -49,7 +49,7 @@ bool color_cell(const ColorGroup& look, GroupSettings& settings)
 {
     ImGui::TableNextColumn();
     glm::dvec3 color = look.color;
-    if (!color_field("##color", color, ImGuiColorEditFlags_NoInputs | ImGuiColorEditFlags_NoLabel)) return false;
+    if (!color_field("##color", color)) return false;
     settings.color = color;
     return true;
 }
@@ -200,7 +200,8 @@ void size_cell(const char* id, uint8_t group, size_t count, double radius_units,
     ImGui::TableNextColumn();
     if (count == 0) return right_aligned("-", true);
     const ImGuiID own = ImGui::GetID(id);
-    double radius = edited_id == own ? edited : radius_units / model.volume.spacing.x;
+    const double before = radius_units / model.volume.spacing.x;
+    double radius = edited_id == own ? edited : before;
     constexpr double LEAST = 0.0, MOST = 1000.0;
     ImGui::SetNextItemWidth(-1.0f);
     drag_number(id, radius, 0.05, LEAST, MOST, "%.2f");
@@ -210,7 +211,7 @@ void size_cell(const char* id, uint8_t group, size_t count, double radius_units,
     } else if (edited_id == own) {
         edited_id = 0;
     }
-    if (ImGui::IsItemDeactivatedAfterEdit())
+    if (ImGui::IsItemDeactivatedAfterEdit() && radius != before)
         actions.push_back(RadiusOp{.of = of, .radius_voxels = radius, .group = group});
     hint(of == RadiusOp::Of::nodes ? "Mean radius of the group's nodes, in voxels; a change applies to all of them."
                                    : "Mean radius of the group's internodes, in voxels; a change applies to all of "

@@ -112,13 +112,19 @@ void cut_range(int axis, const Model& model, Actions& actions)
     const double size = std::max(double(model.volume.size[axis]), 1.0);
     const CutBox& cut = model.session.cut;
     const double was[2] = {std::clamp(cut.lower[axis], 0.0, size), std::clamp(cut.upper[axis], 0.0, size)};
-    float lower = float(was[0]), upper = float(was[1]);
-    ImGui::SetNextItemWidth(14.0f * ImGui::GetFontSize());
-    const bool changed = ImGui::DragFloatRange2(AXES[axis], &lower, &upper, float(size / 300.0), 0.0f, float(size),
-                                                "from %.0f", "to %.0f", ImGuiSliderFlags_AlwaysClamp);
-    if (!changed) return;
-    if (double(lower) != was[0]) actions.push_back(MoveCut{axis, false, (double(lower) - was[0]) / size});
-    if (double(upper) != was[1]) actions.push_back(MoveCut{axis, true, (double(upper) - was[1]) / size});
+    double lower = was[0], upper = was[1];
+    const float gap = ImGui::GetStyle().ItemInnerSpacing.x, width = 7.0f * ImGui::GetFontSize() - 0.5f * gap;
+    ImGui::PushID(axis);
+    ImGui::SetNextItemWidth(width);
+    if (drag_number("##from", lower, size / 300.0, 0.0, was[1], "from %.0f"))
+        actions.push_back(MoveCut{axis, false, (lower - was[0]) / size});
+    ImGui::SameLine(0.0f, gap);
+    ImGui::SetNextItemWidth(width);
+    if (drag_number("##to", upper, size / 300.0, was[0], size, "to %.0f"))
+        actions.push_back(MoveCut{axis, true, (upper - was[1]) / size});
+    ImGui::SameLine(0.0f, gap);
+    ImGui::TextUnformatted(AXES[axis]);
+    ImGui::PopID();
 }
 
 void cut_menu(const Model& model, Actions& actions)

@@ -48,9 +48,9 @@ void number_row(const char* label, const char* key, double now, double least, do
     ImGui::PushID(key);
     ImGui::SetNextItemWidth(11.0f * ImGui::GetFontSize());
     double shown = edited_key == key ? edited : now;
-    slider_scalar("##value", ImGuiDataType_Double, &shown, &least, &most, format);
+    const bool is_changed = slider_scalar("##value", ImGuiDataType_Double, &shown, &least, &most, format);
     hint(text);
-    if (ImGui::IsItemActive()) {
+    if (ImGui::IsItemActive() || is_changed) {
         edited_key = key;
         edited = shown;
     } else if (edited_key == key) {

@@ -59,7 +59,8 @@ void radius(const Model& model, double radius_units, Actions& actions)
     constexpr double LEAST = 0.0, MOST = 1000.0;
     drag_number("##node radius", edited, 0.05, LEAST, MOST, "%.2f voxels");
     is_edited = ImGui::IsItemActive();
-    if (ImGui::IsItemDeactivatedAfterEdit()) actions.push_back(RadiusOp{.radius_voxels = edited});
+    if (ImGui::IsItemDeactivatedAfterEdit() && edited != radius_units / voxel)
+        actions.push_back(RadiusOp{.radius_voxels = edited});
     hint(sentence("Drag sideways, or Ctrl + click to type. ", name_with_key("larger_selected", model.keymap), ". ",
                   name_with_key("smaller_selected", model.keymap), ".")
              .c_str());

@@ -11,6 +11,7 @@
 #include "engine/base/text.h"
 #include "engine/session/session_patch.h"
 #include "engine/workbench/curves/fine_drag.h"
+#include "ui/panels/number_field.h"
 #include "ui/panels/panels.h"
 
 namespace shvr::ui {
@@ -81,30 +82,29 @@ private:
 bool slider_scalar(const char* id, ImGuiDataType type, void* value, const void* lower, const void* upper,
                    const char* format, ImGuiSliderFlags flags)
 {
-    const bool is_typed = ImGui::TempInputIsActive(ImGui::GetID(id));
-    if (!is_typed) ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32_BLACK_TRANS);
+    if (is_typed_over(id)) return typed_over(id, type, value, lower, upper, format);
+    ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32_BLACK_TRANS);
     const bool is_changed = [&] {
+        const TypedLater typed_later(id);
         const HeldSlider held(ImGui::GetID(id));
         return ImGui::SliderScalar(id, type, value, lower, upper, format, ImGuiSliderFlags_AlwaysClamp | flags);
     }();
-    if (!is_typed) ImGui::PopStyleColor();
+    ImGui::PopStyleColor();
+    if (is_typed_over(id)) return is_changed;
+    constexpr float SPARE = 2.0f;  // pixels next to the number
     const ImVec2 begin = ImGui::GetItemRectMin(), end = ImGui::GetItemRectMax();
-    const ImGuiStyle& style = ImGui::GetStyle();
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    if (!is_typed) {
-        constexpr float SPARE = 2.0f;  // pixels next to the number
-        std::array<char, 64> text{};
-        ImGui::DataTypeFormatString(text.data(), int(text.size()), type, value, format);
-        const ImVec2 size = ImGui::CalcTextSize(text.data());
-        const ImVec2 at{std::floor(0.5f * (begin.x + end.x - size.x)), begin.y + style.FramePadding.y};
-        const ImGuiCol ground = ImGui::IsItemActive()    ? ImGuiCol_FrameBgActive
-                                : ImGui::IsItemHovered() ? ImGuiCol_FrameBgHovered
-                                                         : ImGuiCol_FrameBg;
-        list.AddRectFilled({at.x - SPARE, at.y}, {at.x + size.x + SPARE, at.y + size.y}, ImGui::GetColorU32(ground));
-        list.PushClipRect(begin, end, true);
-        list.AddText(at, ImGui::GetColorU32(ImGuiCol_Text), text.data());
-        list.PopClipRect();
-    }
+    std::array<char, 64> text{};
+    ImGui::DataTypeFormatString(text.data(), int(text.size()), type, value, format);
+    const ImVec2 size = ImGui::CalcTextSize(text.data());
+    const ImVec2 at{std::floor(0.5f * (begin.x + end.x - size.x)), begin.y + ImGui::GetStyle().FramePadding.y};
+    const ImGuiCol ground = ImGui::IsItemActive()    ? ImGuiCol_FrameBgActive
+                            : ImGui::IsItemHovered() ? ImGuiCol_FrameBgHovered
+                                                     : ImGuiCol_FrameBg;
+    list.AddRectFilled({at.x - SPARE, at.y}, {at.x + size.x + SPARE, at.y + size.y}, ImGui::GetColorU32(ground));
+    list.PushClipRect(begin, end, true);
+    list.AddText(at, ImGui::GetColorU32(ImGuiCol_Text), text.data());
+    list.PopClipRect();
     return is_changed;
 }
 
@@ -112,6 +112,8 @@ bool slider_scalar(const char* id, ImGuiDataType type, void* value, const void* 
 bool drag_number(const char* id, double& value, double speed, double lower, double upper, const char* format,
                  ImGuiSliderFlags flags)
 {
+    if (is_typed_over(id)) return typed_over(id, ImGuiDataType_Double, &value, &lower, &upper, format);
+    const TypedLater typed_later(id);
     const double by_shift = ImGui::GetIO().KeyShift ? 0.1 * double(FineDrag::SHARE) : 1.0;
     return ImGui::DragScalar(id, ImGuiDataType_Double, &value, float(by_shift * speed), &lower, &upper, format,
                              ImGuiSliderFlags_AlwaysClamp | flags);

@@ -9,6 +9,7 @@
 #include "engine/session/session_patch.h"
 #include "engine/session/words/number_words.h"
 #include "engine/session/words/setting_labels.h"
+#include "engine/session/words/typed_number.h"
 #include "engine/workbench/actions/action_rows.h"
 #include "engine/workbench/bindings/keymap.h"
 #include "engine/workbench/bindings/palette_lists.h"
@@ -64,11 +65,11 @@ bool takes_arguments(const std::string& id)
 
 /// Returns an entry for a typed action, with the reason if the text is not a valid action or the action is unavailable.
 template <class Make>
-PaletteEntry typed(const Model& model, std::string_view text, const char* group, const Make& make)
+PaletteEntry typed_exactly(const Model& model, const std::string& text, const char* group, const Make& make)
 {
-    PaletteEntry entry{.name = std::string(text), .group = group};
+    PaletteEntry entry{.name = text, .group = group};
     try {
-        entry.action = make();
+        entry.action = make(text);
         entry.why_not = why_not(model, *entry.action);
         if (const Set* const set = entry.action->as<Set>(); set && entry.why_not.empty())
             static_cast<void>(patched(model.session, set->patch));
@@ -76,6 +77,32 @@ PaletteEntry typed(const Model& model, std::string_view text, const char* group,
         entry.why_not = error.what();
     }
     return entry;
+}
+
+/// Returns the text with a decimal point in each of its values, "key=value", that has a decimal comma.
+std::string with_decimal_points(std::string_view text)
+{
+    std::string changed;
+    for (const std::string_view word : words_of(text)) {
+        const size_t value = word.find('=') + 1;
+        changed += sentence(changed.empty() ? "" : " ", word.substr(0, value), with_decimal_point(word.substr(value)));
+    }
+    return changed;
+}
+
+/// The same, with decimal points where it is not valid with decimal commas. `make`: returns the action of a text.
+template <class Make>
+PaletteEntry typed(const Model& model, std::string_view text, const char* group, const Make& make)
+{
+    PaletteEntry entry = typed_exactly(model, std::string(text), group, make);
+    if (entry.why_not.empty()) return entry;
+    PaletteEntry with_points = typed_exactly(model, with_decimal_points(text), group, make);
+    return with_points.why_not.empty() ? with_points : entry;
+}
+
+Action set_of(const std::string& text)
+{
+    return Set{patch_of(text)};
 }
 
 /// Adds the opening of a typed address. The entry's name lacks the address's query, which is a credential.
@@ -101,9 +128,9 @@ void add_typed(std::vector<PaletteEntry>& entries, const Model& model, std::stri
     const std::string_view first = text.substr(0, text.find(' '));
     const size_t equals = text.find('=');
     if (is_action_id(first)) {
-        entries.push_back(typed(model, text, "Action", [&] { return action_of_text(std::string(text)); }));
+        entries.push_back(typed(model, text, "Action", action_of_text));
     } else if (equals != std::string_view::npos && equals > 0 && text.substr(0, equals).find(' ') == text.npos) {
-        entries.push_back(typed(model, text, "Setting", [&]() -> Action { return Set{patch_of(std::string(text))}; }));
+        entries.push_back(typed(model, text, "Setting", set_of));
     }
 }
 
@@ -176,9 +203,9 @@ void add_settings(std::vector<PaletteEntry>& entries, const Model& model, std::s
             "Setting: " + key.name + (now.empty() ? "" : ", now " + value_in_words(key.name, now));
         for (const std::string& value : few_values(key)) {
             if (value == now) continue;
-            PaletteEntry entry = typed(model, title + ": " + value_in_words(key.name, value), "",
-                                       [&]() -> Action { return Set{patch_of(sentence(key.name, '=', value))}; });
+            PaletteEntry entry = typed_exactly(model, sentence(key.name, '=', value), "", set_of);
             if (!entry.why_not.empty()) continue;
+            entry.name = title + ": " + value_in_words(key.name, value);
             entry.group = about;
             entries.push_back(std::move(entry));
         }
@@ -196,10 +223,9 @@ void add_values(std::vector<PaletteEntry>& entries, const Model& model, std::str
     size_t left = MAX_VALUES;
     for (const SessionKey& key : keys_of_settings()) {
         if (!is_found(key, words)) continue;
-        PaletteEntry entry = typed(model, sentence(key.name, '=', value), "",
-                                   [&]() -> Action { return Set{patch_of(sentence(key.name, '=', value))}; });
+        PaletteEntry entry = typed(model, sentence(key.name, '=', value), "", set_of);
         if (!entry.why_not.empty()) continue;
-        entry.name = sentence(title_of(key), ": ", value);
+        entry.name = sentence(title_of(key), ": ", entry.name.substr(key.name.size() + 1));
         entry.group = "Setting: " + key.name;
         entries.push_back(std::move(entry));
         if (--left == 0) return;

@@ -11,6 +11,14 @@ namespace shvr::ui {
 
 namespace {
 
+/// Replaces commas between two digits, as in "0,8 x 0,8 x 1,2", by points.
+std::string with_decimal_points(std::string text)
+{
+    for (size_t i = 1; i + 1 < text.size(); ++i)
+        if (text[i] == ',' && is_digit(text[i - 1]) && is_digit(text[i + 1])) text[i] = '.';
+    return text;
+}
+
 /// Parts "0.8x0.8x1.2um" into words, and replaces the signs between numbers by spaces.
 std::string spaced_out(const std::string& text)
 {
@@ -31,9 +39,8 @@ std::string spaced_out(const std::string& text)
     return spaced;
 }
 
-}  // namespace
-
-std::optional<VoxelSize> voxel_size_of(const std::string& text)
+/// Reads a size in which commas stand between numbers, as signs or spaces do.
+std::optional<VoxelSize> read_size(const std::string& text)
 {
     const std::string spaced = spaced_out(text);
     std::vector<double> sides;
@@ -52,6 +59,15 @@ std::optional<VoxelSize> voxel_size_of(const std::string& text)
     size.spacing = sides.size() == 1 ? glm::dvec3(sides[0]) : glm::dvec3(sides[0], sides[1], sides[2]);
     if (size.unit == "\u00b5m" || size.unit == "\u03bcm") size.unit = "um";
     return size;
+}
+
+}  // namespace
+
+std::optional<VoxelSize> voxel_size_of(const std::string& text)
+{
+    const std::optional<VoxelSize> size = read_size(with_decimal_points(text));
+    // One comma, as in "1 2,5", may be either, so that it is refused.
+    return size || std::ranges::count(text, ',') != 2 ? size : read_size(text);
 }
 
 std::string text_of(const VoxelSize& size)

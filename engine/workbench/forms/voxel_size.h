@@ -13,7 +13,8 @@ struct VoxelSize {
     std::string unit{};  ///< empty: none was typed
 };
 
-/// Returns null for a text that states no size: one number for all axes, or three, each above 0, and then the unit.
+/// Returns null for a text that states no size: one number for all axes, or three, each above 0, and then the unit. A
+/// comma is a decimal comma, "1,5 um", or, if there are two, between the numbers, "1, 1, 2" and "1,1,2".
 std::optional<VoxelSize> voxel_size_of(const std::string& text);
 /// Returns "0.8 x 0.8 x 1.2 um", which voxel_size_of reads as the same size.
 std::string text_of(const VoxelSize& size);

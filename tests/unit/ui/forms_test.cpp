@@ -13,6 +13,7 @@
 #include "engine/workbench/forms/import_form.h"
 #include "engine/workbench/forms/label_form.h"
 #include "engine/workbench/forms/movie_form.h"
+#include "engine/workbench/forms/volume_units.h"
 #include "engine/workbench/forms/voxel_size.h"
 #include "engine/workbench/words/task_words.h"
 #include "tests/support/model_world.h"
@@ -242,7 +243,12 @@ TEST_CASE("the size of a voxel is typed in one line, with one number or three an
     CHECK(read("2") == "2 x 2 x 2");
     CHECK(read("0.8x0.8x1.2um") == "0.8 x 0.8 x 1.2 um");
     CHECK(read("1e-3 mm") == "0.001 x 0.001 x 0.001 mm");
-    for (const char* wrong : {"", "um", "1 2", "1 2 3 4", "0 1 1", "-1 1 1", "1 1 nan", "1 1 1 um mm", "um 1 1 1"}) {
+    CHECK(read("1,5 um") == "1.5 x 1.5 x 1.5 um");
+    CHECK(read("0,8 x 0,8 x 1,2 um") == "0.8 x 0.8 x 1.2 um");
+    CHECK(read("0,5 0,5 2") == "0.5 x 0.5 x 2");
+    CHECK(read("1,1,2 mm") == "1 x 1 x 2 mm");
+    for (const char* wrong : {"", "um", "1 2", "1 2 3 4", "0 1 1", "-1 1 1", "1 1 nan", "1 1 1 um mm", "um 1 1 1",
+                              "1 2,5", "1,2,3,4", "1,2.5"}) {
         CAPTURE(wrong);
         CHECK(read(wrong) == "none");
     }
@@ -254,6 +260,19 @@ TEST_CASE("the size of a voxel is typed in one line, with one number or three an
     CHECK(why_not(form).find("'0.1 0.2' is no size; expected") != std::string::npos);
     CHECK(why_not(ImportForm{}).starts_with("name the scan"));
     CHECK(why_not(ImportForm{.volume = "/a/b.tif"}).starts_with("name the folder"));
+}
+
+TEST_CASE("a volume without a unit of length has lengths in voxels, and no parts in cubic millimetres")
+{
+    VolumeInfo volume;
+    CHECK(unit_of_lengths(volume) == "voxels");
+    CHECK_FALSE(has_cubic_millimetres(volume));
+    volume.unit = "um";
+    CHECK(unit_of_lengths(volume) == "\u00b5m");
+    CHECK(has_cubic_millimetres(volume));
+    volume.unit = "parsec";  // nothing is known of it
+    CHECK(unit_of_lengths(volume) == "parsec");
+    CHECK_FALSE(has_cubic_millimetres(volume));
 }
 
 TEST_CASE("what a task has done is told with its folder, counts and integers as integers")

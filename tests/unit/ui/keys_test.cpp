@@ -524,6 +524,10 @@ TEST_CASE("the palette finds shortcuts by words, actions by their text and setti
     CHECK(first("orbit right_degrees=x").why_not.find("right_degrees") != std::string::npos);
     CHECK(first("light.ambient=0.4").action->as<Set>()->patch == R"({"light":{"ambient":0.4}})");
     CHECK(first("light.ambient=0.4").why_not.empty());
+    CHECK(first("light.ambient=0,4").action->as<Set>()->patch == R"({"light":{"ambient":0.4}})");
+    CHECK(first("light.ambient=0,4").name == "light.ambient=0.4");
+    CHECK_FALSE(first("light.ambient=0,4,5").why_not.empty());
+    CHECK(text_of(*first("orbit right_degrees=1,5 up_degrees=2").action) == "orbit right_degrees=1.5 up_degrees=2.0");
     CHECK(first("light.ambient=70").why_not.find("ambient") != std::string::npos);
     CHECK(first("light.ambiance=0.4").why_not.find("ambiance") != std::string::npos);
     CHECK(first("light.amb").completion == "light.ambient=");
@@ -549,6 +553,7 @@ TEST_CASE("the palette finds panels and settings by words, values behind words, 
     }
     CHECK(found("ambient", "Ambient light").completion == "light.ambient=");
     CHECK(found("ambient 0.4", "Ambient light: 0.4").action->as<Set>()->patch == R"({"light":{"ambient":0.4}})");
+    CHECK(found("ambient 0,4", "Ambient light: 0.4").action->as<Set>()->patch == R"({"light":{"ambient":0.4}})");
     for (const PaletteEntry& entry : palette_entries(world.model, "ambient 70"))
         CHECK_MESSAGE(entry.name != "Ambient light: 70", "a value out of range is offered");
     CHECK(found("pivot", "Pivot of turning: the probe").action->as<Set>()->patch ==

@@ -1,7 +1,6 @@
 #include "ui/panels/dialogs/field_widgets.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 
 #include <imgui/imgui.h>
@@ -13,6 +12,7 @@
 #include "ui/panels/dialogs/file_chooser.h"
 #include "ui/panels/field_keys.h"
 #include "ui/panels/imgui_keys.h"
+#include "ui/panels/number_field.h"
 #include "ui/panels/widgets.h"
 
 namespace shvr::ui {
@@ -110,25 +110,15 @@ public:
     void number(std::string_view name, std::optional<double>& value, const NumberRange&, const About& about) override
     {
         if (is_left_out(name)) return;
-        char digits[32] = "";
-        if (value) std::snprintf(digits, sizeof digits, "%.6g", *value);
-        std::string text = digits;
-        if (ImGui::InputText(begin_row(name).c_str(), &text, ImGuiInputTextFlags_CharsScientific)) {
-            const std::optional<double> typed = number_of(trimmed(text));
-            if (typed || trimmed(text).empty()) value = typed;
-        }
+        number_field(begin_row(name).c_str(), value);
         tell(about);
     }
     void any_whole(std::string_view name, std::optional<int64_t>& value, int64_t lower, int64_t upper,
                    const About& about) override
     {
         if (is_left_out(name)) return;
-        std::string text = value ? std::to_string(*value) : std::string();
-        if (ImGui::InputText(begin_row(name).c_str(), &text, ImGuiInputTextFlags_CharsDecimal)) {
-            const std::optional<int64_t> typed = whole_of(trimmed(text));
-            if (typed) value = std::clamp(*typed, lower, upper);
-            if (trimmed(text).empty()) value.reset();  // a key that must have a value keeps its own
-        }
+        // An empty field leaves a key that must have a value its own.
+        if (whole_field(begin_row(name).c_str(), value) && value) value = std::clamp(*value, lower, upper);
         tell(about);
     }
     void choice(std::string_view name, std::string& value, const std::vector<std::string_view>& names,
@@ -174,15 +164,14 @@ public:
     {
         if (is_left_out(name)) return;
         glm::dvec3 shown = value.value_or(glm::dvec3(0.0));
-        if (ImGui::InputScalarN(begin_row(name).c_str(), ImGuiDataType_Double, &shown.x, 3, nullptr, nullptr, "%.6g"))
-            value = shown;
+        if (number_fields(begin_row(name).c_str(), shown)) value = shown;
         tell(about);
     }
     void numbers(std::string_view, std::optional<glm::dvec2>&, const NumberRange&, const About&) override {}
     void wholes(std::string_view name, std::vector<int64_t>& value, int64_t lower, int64_t upper,
                 const About& about) override
     {
-        if (ImGui::InputScalarN(begin_row(name).c_str(), ImGuiDataType_S64, value.data(), int(value.size())))
+        if (whole_fields(begin_row(name).c_str(), value))
             for (int64_t& each : value) each = std::clamp(each, lower, upper);
         tell(about);
     }

@@ -9,6 +9,7 @@
 #include "engine/base/text.h"
 #include "engine/workbench/lists/group_list.h"
 #include "ui/panels/dialogs/field_widgets.h"
+#include "ui/panels/number_field.h"
 #include "ui/panels/widgets.h"
 
 namespace shvr::ui {
@@ -71,22 +72,22 @@ void range_row()
     ImGui::BeginDisabled(!limits_form.has_range);
     ImGui::SameLine();
     ImGui::SetNextItemWidth(width);
-    ImGui::InputDouble("##low", &limits_form.range.x, 0.0, 0.0, "%.6g");
+    number_field("##low", limits_form.range.x);
     ImGui::SameLine();
     ImGui::TextUnformatted("to");
     ImGui::SameLine();
     ImGui::SetNextItemWidth(width);
-    ImGui::InputDouble("##high", &limits_form.range.y, 0.0, 0.0, "%.6g");
+    number_field("##high", limits_form.range.y);
     ImGui::EndDisabled();
 }
 
 void box_rows(const Model& model)
 {
     field_name("First voxel");
-    ImGui::InputScalarN("##first", ImGuiDataType_S64, &limits_form.first.x, 3);
+    whole_fields("##first", {&limits_form.first.x, 3});
     hint("Corner of the box: x, y and z in voxels, counted from 0");
     field_name("Last voxel");
-    ImGui::InputScalarN("##last", ImGuiDataType_S64, &limits_form.last.x, 3);
+    whole_fields("##last", {&limits_form.last.x, 3});
     hint("The opposite corner, which is in the box, too");
     field_name("");
     if (ImGui::Button("Around the probe")) place_box(model.probe_voxel, model);

@@ -8,9 +8,11 @@
 #include <imgui/imgui_stdlib.h>
 
 #include "engine/base/text.h"
+#include "engine/workbench/forms/volume_units.h"
 #include "engine/workbench/lists/group_list.h"
 #include "ui/panels/dialogs/field_widgets.h"
 #include "ui/panels/dialogs/limit_rows.h"
+#include "ui/panels/number_field.h"
 #include "ui/panels/tools/outline_tool.h"
 #include "ui/panels/widgets.h"
 
@@ -49,26 +51,40 @@ constexpr std::pair<IslandsOp::Keep, const char*> KEPT[] = {{IslandsOp::Keep::la
                                                             {IslandsOp::Keep::at, "the part that is clicked"},
                                                             {IslandsOp::Keep::all, "all parts, each its own group"}};
 
+/// Draws a name such as "Distance in mm", shortened where a file's unit is long.
+void name_with_unit(const char* name, const std::string& unit)
+{
+    field_name(shortened(sentence(name, " in ", unit), 8.9f * ImGui::GetFontSize()).c_str());
+}
+
+std::string side_in_words(const VolumeInfo& volume)
+{
+    const std::string unit = volume.unit == "voxel" ? "" : ' ' + unit_of_lengths(volume);
+    return sentence("A voxel is ", digits_of(volume.spacing), unit, " long in x, y and z.");
+}
+
 void fewest_row(IslandsOp& op, const Model& model)
 {
     IslandsForm& form = islands_form;
-    const bool has_unit = !model.volume.unit.empty();
+    const bool is_in_mm3 = form.is_in_mm3 && has_cubic_millimetres(model.volume);
     field_name("Smallest part");
     ImGui::SetNextItemWidth(8.0f * ImGui::GetFontSize());
-    if (form.is_in_mm3 && has_unit)
-        ImGui::InputDouble("##mm3", &form.mm3, 0.0, 0.0, "%.6g");
+    if (is_in_mm3)
+        number_field("##mm3", form.mm3);
     else
-        ImGui::InputScalar("##voxels", ImGuiDataType_S64, &form.voxels);
+        whole_field("##voxels", form.voxels);
     hint("Parts of exactly this size stay");
     ImGui::SameLine();
-    if (ImGui::RadioButton("voxels", !form.is_in_mm3 || !has_unit)) form.is_in_mm3 = false;
-    ImGui::SameLine();
-    ImGui::BeginDisabled(!has_unit);
-    if (ImGui::RadioButton("mm\u00b3", form.is_in_mm3 && has_unit)) form.is_in_mm3 = true;
-    ImGui::EndDisabled();
+    if (has_cubic_millimetres(model.volume)) {
+        if (ImGui::RadioButton("voxels", !is_in_mm3)) form.is_in_mm3 = false;
+        ImGui::SameLine();
+        if (ImGui::RadioButton("mm\u00b3", is_in_mm3)) form.is_in_mm3 = true;
+    } else {
+        ImGui::TextUnformatted("voxels");
+    }
     form.voxels = std::max<int64_t>(form.voxels, 1);
     form.mm3 = std::max(form.mm3, 0.0);
-    if (form.is_in_mm3 && has_unit)
+    if (is_in_mm3)
         op.mm3 = form.mm3;
     else
         op.voxels = form.voxels;
@@ -98,7 +114,7 @@ std::string islands_rows(IslandsOp& op, const Model& model, const std::optional<
         op.at = form.at;
         field_name("At voxel");
         glm::dvec3 shown = form.at.value_or(glm::dvec3(0.0));
-        if (ImGui::InputScalarN("##at", ImGuiDataType_Double, &shown.x, 3, nullptr, nullptr, "%.6g")) form.at = shown;
+        if (number_fields("##at", shown)) form.at = shown;
         hint("A voxel of the part, x, y and z, counted from 0; a click in the picture or in a slice fills it in");
     }
     group_row("Split from", op.split_from, model, op.keep == Keep::all ? "choose a group" : "no: one group", false);
@@ -133,14 +149,26 @@ std::string groups_row(const char* name, std::string& text, std::vector<uint8_t>
 
 void length_row(const char* name, double& length, const Model& model)
 {
-    const std::string unit = model.volume.unit.empty()   ? "voxels"
-                             : model.volume.unit == "um" ? "\u00b5m"
-                                                         : model.volume.unit;
-    field_name((std::string(name) + " (" + unit + ")").c_str());
-    ImGui::InputDouble((std::string("##") + name).c_str(), &length, 0.0, 0.0, "%.6g");
-    const glm::dvec3& side = model.volume.spacing;
-    hint(sentence("A voxel is ", digits_of(side), ' ', model.volume.unit.empty() ? "" : unit, " long in x, y and z")
+    name_with_unit(name, unit_of_lengths(model.volume));
+    number_field((std::string("##") + name).c_str(), length);
+    hint(side_in_words(model.volume).c_str());
+}
+
+void tolerance_row(std::optional<double>& tolerance, const Model& model)
+{
+    name_with_unit("Tolerance", unit_of_lengths(model.volume));
+    number_field("##tolerance", tolerance);
+    hint(sentence("How far nodes may be off the centre line; empty: the longest side of a voxel. ",
+                  side_in_words(model.volume))
              .c_str());
+}
+
+void margin_row(std::optional<int64_t>& margin)
+{
+    name_with_unit("Margin", "voxels");
+    whole_field("##margin", margin);
+    hint(
+        "How far groups may grow beyond the box around the seeds; empty: 16 voxels, or the whole box if one limits it");
 }
 
 void cut_rows(LassoOp& op, const Model& model)

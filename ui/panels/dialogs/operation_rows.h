@@ -15,6 +15,9 @@ namespace shvr::ui {
 std::string groups_row(const char* name, std::string& text, std::vector<uint8_t>& groups, const Model& model);
 /// Draws a length in the unit of the spacing.
 void length_row(const char* name, double& length, const Model& model);
+/// Draw lengths that may be left out: by how much centre lines may be off, and how far seeds may grow beyond their box.
+void tolerance_row(std::optional<double>& tolerance, const Model& model);
+void margin_row(std::optional<int64_t>& margin);
 
 /// Draws the rows of islands. `clicked`: a voxel that was clicked in the picture. Only values that the chosen parts
 /// need are in `op`, so that it is valid whatever is chosen. Returns what to do next; empty: nothing is missing.

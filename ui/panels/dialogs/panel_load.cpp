@@ -16,6 +16,7 @@
 #include "ui/panels/dialogs/field_widgets.h"
 #include "ui/panels/dialogs/file_chooser.h"
 #include "ui/panels/field_keys.h"
+#include "ui/panels/number_field.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 
@@ -114,13 +115,20 @@ bool spacing_field(std::string& text, glm::dvec3& spacing, std::string& unit)
     return true;
 }
 
+void label_behind(const char* words)
+{
+    ImGui::SameLine(0.0f, ImGui::GetStyle().ItemInnerSpacing.x);
+    ImGui::TextUnformatted(words);
+}
+
 /// True where something changed.
 bool bare_fields(LoadForm& form)
 {
     bool is_changed = ImGui::Checkbox("Bare voxels, without a header", &form.is_bare);
     hint("A file of numbers only: enter the size along x, y and z and the type of a voxel.");
     if (!form.is_bare) return is_changed;
-    is_changed |= ImGui::InputInt3("voxels along x, y, z", form.size);
+    is_changed |= whole_fields("##size", form.size);
+    label_behind("voxels along x, y, z");
     for (int& side : form.size) side = std::clamp(side, 1, 1 << 20);
     if (ImGui::BeginCombo("type", name_of(form.type))) {
         for (const VoxelType type : {VoxelType::uint8, VoxelType::int8, VoxelType::uint16, VoxelType::int16,
@@ -133,7 +141,8 @@ bool bare_fields(LoadForm& form)
     }
     is_changed |= ImGui::Checkbox("big-endian", &form.is_big_endian);
     hint("Byte order of a number. Most machines write little-endian.");
-    is_changed |= ImGui::InputInt("bytes to skip at the beginning", &form.offset_bytes);
+    is_changed |= whole_field("##skipped", form.offset_bytes);
+    label_behind("bytes to skip at the beginning");
     form.offset_bytes = std::max(form.offset_bytes, 0);
     return is_changed;
 }
@@ -191,6 +200,8 @@ void load_dialog(const Model& model, Actions& actions)
         if (!voxel_size_of(loading.spacing_text)) dialog_note("", EXPECTED_VOXEL_SIZE);
     }
     ImGui::PopItemWidth();
+    const std::string wrong = refused_number();
+    if (!wrong.empty()) dialog_note("", wrong);
     const std::string settings = settings_of(form);
     const Candidate* const candidate = model.candidate;
     const bool is_current = candidate && candidate->settings == settings && candidate->path == loading.path;
@@ -201,7 +212,7 @@ void load_dialog(const Model& model, Actions& actions)
     if (candidate) about(*candidate);
     ImGui::Separator();
     const ImVec2 button{9.0f * ImGui::GetFontSize(), 0.0f};
-    const bool can_open = is_current && !candidate->is_being_read && candidate->failure.empty();
+    const bool can_open = wrong.empty() && is_current && !candidate->is_being_read && candidate->failure.empty();
     bool closes = false;
     ImGui::BeginDisabled(!can_open);
     if (ImGui::Button("Open", button)) {

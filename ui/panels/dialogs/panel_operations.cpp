@@ -13,6 +13,7 @@
 #include "ui/panels/dialogs/field_widgets.h"
 #include "ui/panels/dialogs/limit_rows.h"
 #include "ui/panels/dialogs/operation_rows.h"
+#include "ui/panels/number_field.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/tools/outline_tool.h"
 #include "ui/panels/tools/point_tool.h"
@@ -89,13 +90,16 @@ void draw_choice()
         ImGui::EndCombo();
     }
     field_name("");
+    ImGui::PushTextWrapPos(0.0f);
     ImGui::TextDisabled("%s", OPERATION_ROWS[state.chosen].meaning);
+    ImGui::PopTextWrapPos();
 }
 
 void draw_operation(GroupOperation& operation, const Model& model)
 {
-    constexpr std::string_view ROWS_OF_THEIR_OWN[]{"distance", "wall", "group", "with",       "inside",        "keep",
-                                                   "voxels",   "mm3",  "at",    "split_from", "only_unpainted"};
+    constexpr std::string_view ROWS_OF_THEIR_OWN[]{"distance", "wall",       "tolerance",     "margin", "group",
+                                                   "with",     "inside",     "keep",          "voxels", "mm3",
+                                                   "at",       "split_from", "only_unpainted"};
     state.why_no_groups.clear();
     state.why_no_limits.clear();
     const std::optional<glm::dvec3> clicked = point_tool().take(model.probe_voxel);
@@ -112,6 +116,8 @@ void draw_operation(GroupOperation& operation, const Model& model)
             draw_fields([&](Fields& f) { operation_fields(f, op); }, {}, false, ROWS_OF_THEIR_OWN);
             if constexpr (requires { op.distance; }) length_row("Distance", op.distance, model);
             if constexpr (requires { op.wall; }) length_row("Wall", op.wall, model);
+            if constexpr (requires { op.tolerance; }) tolerance_row(op.tolerance, model);
+            if constexpr (requires { op.margin; }) margin_row(op.margin);
             if constexpr (requires { op.groups; })
                 state.why_no_groups = groups_row("Groups", state.groups[state.chosen], op.groups, model);
             if constexpr (requires { op.of; })
@@ -136,6 +142,7 @@ bool awaits_click(const GroupOperation& operation)
 /// Returns why the operation cannot be carried out; empty: it can.
 std::string refusal(const Model& model, const GroupOperation& operation, const std::string& line)
 {
+    if (std::string why = refused_number(); !why.empty()) return why;
     if (!state.why_no_groups.empty()) return state.why_no_groups;
     if (!state.why_no_limits.empty()) return state.why_no_limits;
     if (const auto* const cut = std::get_if<LassoOp>(&operation); cut && cut->polygon.empty())

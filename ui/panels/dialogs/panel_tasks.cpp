@@ -19,6 +19,7 @@
 #include "ui/panels/dialogs/field_widgets.h"
 #include "ui/panels/dialogs/picture_rows.h"
 #include "ui/panels/dialogs/task_rows.h"
+#include "ui/panels/number_field.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 
@@ -132,7 +133,8 @@ private:
     {
         if constexpr (std::is_same_v<Form, FigureForm>) {
             ImGui::SameLine();
-            if (copy_button(why_not(form_))) {
+            const std::string wrong = refused_number();
+            if (copy_button(wrong.empty() ? why_not(form_) : wrong)) {
                 FigureTask copy = task;
                 copy.is_copied = true;
                 copy.path.clear();
@@ -144,6 +146,7 @@ private:
     }
     std::string refusal(const Model& model, const Task& task)
     {
+        if (std::string wrong = refused_number(); !wrong.empty()) return wrong;
         std::string why = why_not(model, Action(task));
         if constexpr (requires { why_not(form_); })
             if (why.empty()) why = why_not(form_);

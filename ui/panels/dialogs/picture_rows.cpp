@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <type_traits>
 
 #include <imgui/imgui.h>
 #include <imgui/imgui_stdlib.h>
@@ -13,6 +14,7 @@
 #include "engine/workbench/forms/form_names.h"
 #include "ui/files/asked.h"
 #include "ui/panels/dialogs/field_widgets.h"
+#include "ui/panels/number_field.h"
 #include "ui/panels/widgets.h"
 
 namespace shvr::ui {
@@ -34,16 +36,13 @@ const Programs* programs()
     return known ? &*known : nullptr;
 }
 
-void number_field(const char* id, double& value, const char* format = "%.6g")
+void narrow_field(const char* id, auto& value)
 {
     ImGui::SetNextItemWidth(5.0f * ImGui::GetFontSize());
-    ImGui::InputDouble(id, &value, 0.0, 0.0, format);
-}
-
-void whole_field(const char* id, int& value)
-{
-    ImGui::SetNextItemWidth(5.0f * ImGui::GetFontSize());
-    ImGui::InputInt(id, &value, 0);
+    if constexpr (std::is_same_v<decltype(value), double&>)
+        number_field(id, value);
+    else
+        whole_field(id, value);
 }
 
 void words_after(const char* words)
@@ -55,11 +54,11 @@ void words_after(const char* words)
 void size_rows(SizeForm& size)
 {
     field_name("Size");
-    number_field("##width", size.width);
+    narrow_field("##width", size.width);
     ImGui::SameLine();
     ImGui::TextUnformatted("x");
     ImGui::SameLine();
-    number_field("##height", size.height);
+    narrow_field("##height", size.height);
     ImGui::SameLine();
     ImGui::SetNextItemWidth(6.0f * ImGui::GetFontSize());
     if (ImGui::BeginCombo("##unit", size.is_in_mm ? "mm" : "pixels")) {
@@ -69,7 +68,7 @@ void size_rows(SizeForm& size)
     }
     if (!size.is_in_mm) return;
     field_name("Resolution");
-    number_field("##resolution", size.dots_per_inch);
+    narrow_field("##resolution", size.dots_per_inch);
     words_after("dots per inch");
     hint("Journals ask for 300 or more.");
 }
@@ -169,17 +168,17 @@ void motion_rows(MovieForm& form, const Model& model)
     }
     if (form.goes_through_views) return views_rows(form, model);
     ImGui::SameLine();
-    number_field("##degrees", form.degrees);
+    narrow_field("##degrees", form.degrees);
     words_after("degrees");
 }
 
 void length_row(MovieForm& form)
 {
     field_name("Length");
-    number_field("##seconds", form.seconds);
+    narrow_field("##seconds", form.seconds);
     words_after("s at");
     ImGui::SameLine();
-    number_field("##rate", form.more.frames_per_second);
+    narrow_field("##rate", form.more.frames_per_second);
     words_after("frames per second");
 }
 
@@ -210,11 +209,11 @@ bool draw_form(MovieForm& form, const Model& model, const KnownScan&, bool begin
     motion_rows(form, model);
     length_row(form);
     field_name("Size");
-    whole_field("##width", form.more.pixels.x);
+    narrow_field("##width", form.more.pixels.x);
     ImGui::SameLine();
     ImGui::TextUnformatted("x");
     ImGui::SameLine();
-    whole_field("##height", form.more.pixels.y);
+    narrow_field("##height", form.more.pixels.y);
     words_after("pixels");
     if (more_heading()) {
         field_name("Draw");

@@ -10,6 +10,7 @@
 #include "engine/workbench/forms/voxel_size.h"
 #include "engine/workbench/lists/load_form.h"
 #include "ui/panels/dialogs/field_widgets.h"
+#include "ui/panels/number_field.h"
 #include "ui/panels/widgets.h"
 
 namespace shvr::ui {
@@ -113,11 +114,11 @@ bool draw_form(LabelForm& form, const Model& model, const KnownScan&, bool begin
     const bool has_chooser = path_chooser_is_open();
     field_name("Threshold");
     if (begins) ImGui::SetKeyboardFocusHere();
-    ImGui::InputDouble("##threshold", &form.more.threshold, 0.0, 0.0, "%.6g");
+    number_field("##threshold", form.more.threshold);
     hint("Voxels at or above it belong to parts.");
     neighbours_row(form.more);
     field_name("Smallest part");
-    ImGui::InputScalar("##smallest", ImGuiDataType_S64, &form.more.fewest_voxels);
+    whole_field("##smallest", form.more.fewest_voxels);
     hint("Voxels; smaller parts are left out.");
     form.more.fewest_voxels = std::max<int64_t>(form.more.fewest_voxels, 1);
     field_name("Write labels");

@@ -114,7 +114,7 @@ void edit_point(const Model& model, size_t index, Actions& actions)
     changed |= drag_number("##opacity", point.opacity, 0.002, 0.0, 1.0, "%.4f", ImGuiSliderFlags_Logarithmic);
     hint("Opacity of one voxel: 0 clear, 1 solid.");
     row("Colour");
-    changed |= color_field("##colour", point.color, ImGuiColorEditFlags_None);
+    changed |= color_field("##colour", point.color, true);
     if (changed) send(std::move(points), model, actions);
 }
 
