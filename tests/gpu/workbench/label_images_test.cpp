@@ -104,7 +104,7 @@ TEST_CASE_FIXTURE(OnDevice, "a mask is not taken for a scan: it is loaded, refus
     perform(DismissUnclearFile{});
     desk.folder.write("other.session.json", R"({"shvr_session": 1, "volume": {"path": "small.nrrd"}})");
     perform(LoadAnnotation{.path = desk.path("other.session.json")});
-    CHECK(desk.said("is a session; expected a mask, density offsets, a trace or a transfer function"));
+    CHECK(desk.said("is a session; expected a mask, density offsets, a trace, a transfer function or a mesh"));
     // Dropped again, the scan that is open is not its own mask; and what the user says counts.
     perform(TakeFile{.path = desk.path("scan.nrrd")});
     CHECK(desk.bench.model().unclear_file == nullptr);
