@@ -77,7 +77,7 @@ void file_menu(const Model& model, Actions& actions)
     task_menu(model, actions);
     shortcut_item("load_annotation", model, actions);
     if (model.is_open)
-        hint("A mask, offsets, a trace or a transfer function, into this scan. Or drop it on the window.");
+        hint("A mask, offsets, a trace, a transfer function or a mesh, into this scan. Or drop it on the window.");
     ImGui::Separator();
     shortcut_item("figure", model, actions);
     shortcut_item("movie", model, actions);

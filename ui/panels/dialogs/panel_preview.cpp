@@ -179,7 +179,8 @@ void what_changes(const Model& model)
     if (asking.there == There::nothing && !asking.path.empty())
         return dialog_note("", asking.path + ": there is no such file");
     if (!is_asked || !model.load_preview || model.load_preview->path != asking.previewed) {
-        dialog_note(is_asked ? "is being read ..." : "A mask, density offsets, a trace or a transfer function.", "");
+        dialog_note(is_asked ? "is being read ..." : "A mask, density offsets, a trace, a transfer function or a mesh.",
+                    "");
         return;
     }
     const LoadPreview& preview = *model.load_preview;
@@ -209,7 +210,7 @@ void load_preview_dialog(const Model& model, Actions& actions)
     if (!ImGui::BeginPopupModal(TITLE, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
     const bool has_chooser = path_chooser_is_open();
     const bool is_filled = follow_drops(model) || std::exchange(asking.is_suggested, false);
-    path_row("File", asking.path, "a mask, density offsets, a trace or a transfer function",
+    path_row("File", asking.path, "a mask, density offsets, a trace, a transfer function or a mesh",
              base_of(model).parent_path() / "", is_filled || begins);
     use_row();
     found_row();
