@@ -211,7 +211,7 @@ class Drop(Seen):
             self.select_all()
             self.press("BackSpace")
             self.see_frames()
-            return self.seen("a mask, density offsets, a trace, a transfer function or a mesh", "Load annotation")
+            return self.seen("mask, offsets, trace, transfer function or mesh", "Load annotation")
         self.until(is_emptied, "empty field")
         self.do("type", "--delay", 20, curve, pause_s=0)
         self.see(str(curve), "Load annotation")

@@ -25,9 +25,11 @@ namespace {
 constexpr const char* TITLE = "Load annotation";
 constexpr size_t MAX_ROWS_SHOWN = 12;  ///< the table scrolls beyond
 
-constexpr std::pair<FileUse, const char*> USES[] = {{FileUse::by_contents, "as it states"}, {FileUse::mask, "mask"},
-                                                    {FileUse::offsets, "offsets"},          {FileUse::trace, "trace"},
-                                                    {FileUse::look, "transfer function"},   {FileUse::mesh, "mesh"}};
+constexpr std::pair<FileUse, const char*> USES[] = {{FileUse::by_contents, "as it states"},
+                                                    {FileUse::mask, "mask"},
+                                                    {FileUse::offsets, "offsets"},
+                                                    {FileUse::trace, "trace"},
+                                                    {FileUse::look, "transfer function"}};
 
 struct AnnotationDialog {
     std::string path;  ///< as typed
@@ -210,8 +212,8 @@ void load_preview_dialog(const Model& model, Actions& actions)
     if (!ImGui::BeginPopupModal(TITLE, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
     const bool has_chooser = path_chooser_is_open();
     const bool is_filled = follow_drops(model) || std::exchange(asking.is_suggested, false);
-    path_row("File", asking.path, "a mask, density offsets, a trace, a transfer function or a mesh",
-             base_of(model).parent_path() / "", is_filled || begins);
+    path_row("File", asking.path, "mask, offsets, trace, transfer function or mesh", base_of(model).parent_path() / "",
+             is_filled || begins);
     use_row();
     found_row();
     follow_disk(model);
