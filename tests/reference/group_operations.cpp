@@ -274,10 +274,11 @@ DenseGroups wanted_by(const GrowSeedsOp& op, DenseGroups dense, const DenseVolum
         return !box ||
                (glm::all(glm::greaterThanEqual(voxel, box->lower)) && glm::all(glm::lessThan(voxel, box->upper)));
     };
+    const auto is_behind = [&](const Size3& voxel) { return is_behind_plane(voxel, op.limits, volume.spacing); };
     std::vector<Size3> seeds;
     VoxelBox near{Size3(1 << 30), Size3(-(1 << 30))};
     for_each_voxel(dense.size, [&](const Size3& voxel) {
-        if (!is_seed(before.at(voxel)) || !is_in_box(voxel, op.limits.box)) return;
+        if (!is_seed(before.at(voxel)) || !is_in_box(voxel, op.limits.box) || !is_behind(voxel)) return;
         seeds.push_back(voxel);
         near = {glm::min(near.lower, voxel), glm::max(near.upper, voxel + int64_t{1})};
     });
@@ -290,6 +291,7 @@ DenseGroups wanted_by(const GrowSeedsOp& op, DenseGroups dense, const DenseVolum
              {Size3(0, 0, -1), Size3(0, -1, 0), Size3(-1, 0, 0), Size3(1, 0, 0), Size3(0, 1, 0), Size3(0, 0, 1)}) {
             const Size3 next = voxel + step;
             if (!dense.contains(next) || !is_in_box(next, op.limits.box) || !is_in_box(next, near)) continue;
+            if (!is_behind(next)) continue;
             const auto index = size_t(next.x + dense.size.x * (next.y + dense.size.y * next.z));
             const uint8_t held = before.at(next);
             const double value = volume.intensities[index];
@@ -401,6 +403,16 @@ DenseGroups wanted_by(const TraceFromMaskOp&, DenseGroups dense, const DenseVolu
 }
 
 }  // namespace
+
+bool is_behind_plane(const Size3& voxel, const OperationLimits& limits, const glm::dvec3& spacing)
+{
+    if (!limits.plane_normal) return true;
+    double beyond = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+        beyond +=
+            (*limits.plane_normal)[axis] * spacing[axis] * (double(voxel[axis]) + 0.5 - (*limits.plane_point)[axis]);
+    return beyond <= 0.0;
+}
 
 DenseGroups wanted(const GroupOperation& operation, const DenseGroups& before, const DenseVolume& volume)
 {

@@ -44,6 +44,9 @@ struct DenseVolume {
     GroupSet locked{};
 };
 
+/// Whether the centre of a voxel is on the limits' plane or on the side where voxels may change; true without a plane.
+bool is_behind_plane(const Size3& voxel, const OperationLimits& limits, const glm::dvec3& spacing);
+
 /// The groups that the operation wants, without limits and locks unless they are a part of its definition.
 DenseGroups wanted(const GroupOperation& operation, const DenseGroups& before, const DenseVolume& volume);
 

@@ -204,8 +204,8 @@ void Flood::for_each_brick_of_box(const Visit& visit)
 bool Flood::is_open(const Size3& voxel, uint8_t held) const
 {
     const OperationLimits& limits = op_.limits;
-    if (seeds_[held] || edit_.input().locked[held] || (limits.only_unpainted && held != 0) ||
-        (limits.inside && *limits.inside != held))
+    if (!edit_.is_behind_plane(voxel) || seeds_[held] || edit_.input().locked[held] ||
+        (limits.only_unpainted && held != 0) || (limits.inside && *limits.inside != held))
         return false;
     if (!limits.within) return true;
     const double value = costs_.value(voxel);
@@ -223,7 +223,7 @@ void Flood::prepare(int64_t brick)
                 const Size3 voxel(x, y, z);
                 const uint8_t group = held[index_in_brick(voxel)];
                 const uint32_t place = place_of(voxel);
-                if (seeds_[group]) groups_[place] = group;
+                if (seeds_[group] && edit_.is_behind_plane(voxel)) groups_[place] = group;
                 if (!is_open(voxel, group)) continue;
                 is_open_[place] = true;
                 ++open_;
@@ -298,7 +298,7 @@ void Flood::grow(const Progress& progress)
     edit_.note(sentence("grown in the box ", text_of(box_), left));
 }
 
-/// Box around all seed voxels that the limits' box contains; empty if there are none.
+/// Box around all seed voxels that the limits' box and plane leave; empty if there are none.
 std::optional<VoxelBox> box_of_seeds(const GroupSet& seeds, MaskEdit& edit, const Progress& progress)
 {
     std::optional<VoxelBox> around;
@@ -312,7 +312,7 @@ std::optional<VoxelBox> box_of_seeds(const GroupSet& seeds, MaskEdit& edit, cons
             for (int64_t y = part.lower.y; y < part.upper.y; ++y)
                 for (int64_t x = part.lower.x; x < part.upper.x; ++x) {
                     const Size3 voxel(x, y, z);
-                    if (!seeds[held[index_in_brick(voxel)]]) continue;
+                    if (!seeds[held[index_in_brick(voxel)]] || !edit.is_behind_plane(voxel)) continue;
                     const VoxelBox one{voxel, voxel + int64_t{1}};
                     around = around ? united(*around, one) : one;
                 }
@@ -329,7 +329,7 @@ void perform(const GrowSeedsOp& op, MaskEdit& edit, const Progress& progress)
     if (!seeds)
         fail("no group", op.groups.empty() ? std::string() : " of " + text_of(op.groups),
              " that is not locked has voxels", op.limits.box ? " in the box " + text_of(*op.limits.box) : std::string(),
-             "; expected some as seeds");
+             op.limits.plane_normal ? " behind the plane" : "", "; expected some as seeds");
     VoxelBox box{Size3(0), edit.mask().size()};
     if (op.limits.box) box = {glm::max(box.lower, op.limits.box->lower), glm::min(box.upper, op.limits.box->upper)};
     if (op.margin || !op.limits.box) {

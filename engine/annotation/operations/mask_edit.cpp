@@ -78,7 +78,8 @@ std::string sentence_of(const OperationResult& result, const std::string& title,
     return sentence(title, ": ", result.voxels == 0 ? "nothing changed" : moved_in_words(result, name_of), note, kept);
 }
 
-MaskEdit::MaskEdit(const OperationInput& input, const OperationLimits& limits) : input_(input), limits_(limits)
+MaskEdit::MaskEdit(const OperationInput& input, const OperationLimits& limits)
+    : input_(input), limits_(limits), plane_(plane_in_voxels(limits, input.volume.spacing))
 {
     SHVR_CHECK(input.mask.size() == input.volume.size);
 }
@@ -106,7 +107,12 @@ const MaskBrick& MaskEdit::read(int64_t brick)
 
 bool MaskEdit::may_change(int64_t brick) const
 {
-    return !limits_.box || meet(mask().box_of(brick), *limits_.box);
+    const VoxelBox box = mask().box_of(brick);
+    if (limits_.box && !meet(box, *limits_.box)) return false;
+    Size3 farthest_behind(0);
+    for (int axis = 0; axis < 3; ++axis)
+        farthest_behind[axis] = plane_[axis] > 0.0 ? box.lower[axis] : box.upper[axis] - 1;
+    return is_behind_plane(farthest_behind);
 }
 
 bool MaskEdit::is_within(int64_t brick, size_t index)
@@ -171,7 +177,10 @@ void MaskEdit::want(int64_t brick, const MaskBrick& wanted)
     for (int64_t z = box.lower.z; z < box.upper.z; ++z)
         for (int64_t y = box.lower.y; y < box.upper.y; ++y) {
             const size_t row = size_t(index_of(Size3(0, y - corner.y, z - corner.z), Size3(BRICK_SIDE)));
-            want_row(change, held, wanted, row + size_t(box.lower.x - corner.x), row + size_t(box.upper.x - corner.x));
+            int64_t first = box.lower.x, end = box.upper.x;
+            while (first < end && !is_behind_plane({first, y, z})) ++first;
+            while (first < end && !is_behind_plane({end - 1, y, z})) --end;
+            want_row(change, held, wanted, row + size_t(first - corner.x), row + size_t(end - corner.x));
         }
     if (change.runs.empty()) return;
     change.runs.shrink_to_fit();  // the history keeps it

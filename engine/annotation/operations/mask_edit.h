@@ -59,8 +59,13 @@ public:
     void check_memory(uint64_t bytes) const;
     /// Returns a brick of the mask, all zeros if it is unpainted, and counts the read.
     const MaskBrick& read(int64_t brick);
-    /// Whether any voxel of the brick lies in the limits' box. If none does, `want` ignores the brick.
+    /// Whether any voxel of the brick lies in the limits' box and behind their plane. If none does, `want` ignores the
+    /// brick.
     bool may_change(int64_t brick) const;
+    bool is_behind_plane(const Size3& voxel) const
+    {
+        return glm::dot(glm::dvec3(plane_), glm::dvec3(voxel) + 0.5) + plane_.w <= 0.0;
+    }
     /// Records the change of a brick to `wanted`, except for voxels that may not change. Call at most once per brick.
     void want(int64_t brick, const MaskBrick& wanted);
     void change_trace(std::vector<TraceChange> changes) { result_.trace_changes = std::move(changes); }
@@ -75,6 +80,7 @@ private:
 
     const OperationInput& input_;
     const OperationLimits& limits_;
+    glm::dvec4 plane_;  ///< plane_in_voxels
     OperationResult result_;
     int64_t intensities_of_ = -1;  ///< the brick whose voxels' intensities are in `intensities_`
     std::vector<double> intensities_;

@@ -7,6 +7,13 @@
 
 namespace shvr {
 
+glm::dvec4 plane_in_voxels(const OperationLimits& limits, const glm::dvec3& spacing)
+{
+    if (!limits.plane_normal || !limits.plane_point) return glm::dvec4(0.0);
+    const glm::dvec3 along = glm::normalize(*limits.plane_normal) * spacing;
+    return {along, -glm::dot(along, *limits.plane_point)};
+}
+
 VoxelBox read_box(const JsonNode& node)
 {
     constexpr const char* EXPECTED = "six whole numbers, [x0,y0,z0,x1,y1,z1], with x0 < x1, y0 < y1 and z0 < z1";

@@ -77,6 +77,16 @@ class Operations(Operating):
         self.until(lambda: self.previewed().get("within") == [0, 0], "an intensity range")
         self.until(lambda: self.see("Grow: ", OPERATIONS)["text"] != whole, "another count")
 
+    def test_the_visible_part_ends_at_the_oblique_cutting_plane(self):
+        self.painted_scan()
+        self.check_follows(lambda: self.click_on("Cut plane", "Tools"), "oblique_cut")
+        self.choose_operation("Grow")
+        self.assertIn(" painted in ", self.see("Grow: ", OPERATIONS)["text"])
+        self.choose_of("Where", "the whole scan", "the visible part (cutting planes)")
+        self.until(lambda: len(self.previewed().get("plane_normal", [])) == 3, "the plane among the limits")
+        self.assertEqual(len(self.previewed()["plane_point"]), 3)
+        self.see("Grow: nothing changed", OPERATIONS)   # the stroke is on the side that was cut away
+
     def test_a_click_says_which_part_is_kept(self):
         x, y = self.painted_scan()
         self.choose_operation("Islands")

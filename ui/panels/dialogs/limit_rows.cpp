@@ -113,10 +113,6 @@ void region_rows(const Model& model, const std::optional<glm::dvec3>& clicked)
         ImGui::EndCombo();
     }
     hint("Voxels elsewhere do not change");
-    if (limits_form.region == Region::visible && model.session.cut.plane_normal) {
-        field_name("");
-        ImGui::TextUnformatted("The oblique cutting plane does not limit operations.");
-    }
     if (limits_form.region != Region::box) return;
     if (clicked && std::exchange(limits_form.awaits_click, false)) place_box(*clicked, model);
     box_rows(model);
@@ -205,6 +201,11 @@ std::string limit_rows(OperationLimits& limits, const Model& model, const std::o
               .inside = limits_form.inside,
               .only_unpainted = limits_form.only_unpainted,
               .box = box};
+    const CutBox& cut = model.session.cut;
+    if (limits_form.region == Region::visible && cut.plane_normal) {
+        limits.plane_normal = cut.plane_normal;
+        limits.plane_point = cut.plane_point.value_or(0.5 * glm::dvec3(model.volume.size));
+    }
     if (limits_form.has_range && !(limits_form.range.x <= limits_form.range.y))
         return sentence("the intensities go from ", digits_of(limits_form.range.x), " to ",
                         digits_of(limits_form.range.y), "; expected the lower one first");

@@ -67,7 +67,7 @@ public:
 
 /// What the limits and locks let the operation do: the definition, voxel by voxel.
 inline DenseGroups limited(const DenseGroups& before, DenseGroups wanted, const OperationLimits& limits,
-                           const GroupSet& locked)
+                           const GroupSet& locked, const glm::dvec3& spacing)
 {
     reference::for_each_voxel(before.size, [&](const Size3& voxel) {
         const uint8_t held = before.at(voxel);
@@ -76,7 +76,8 @@ inline DenseGroups limited(const DenseGroups& before, DenseGroups wanted, const 
                          (!limits.inside || *limits.inside == held) &&
                          (!limits.within || (value >= limits.within->x && value <= limits.within->y)) &&
                          (!limits.box || (glm::all(glm::greaterThanEqual(voxel, limits.box->lower)) &&
-                                          glm::all(glm::lessThan(voxel, limits.box->upper))));
+                                          glm::all(glm::lessThan(voxel, limits.box->upper)))) &&
+                         reference::is_behind_plane(voxel, limits, spacing);
         if (!may) wanted.at(voxel) = held;
     });
     return wanted;
@@ -103,7 +104,7 @@ inline OperationResult check_operation(const GroupOperation& operation, const De
     reference::DenseVolume volume{spacing, {}, trace, locked};
     reference::for_each_voxel(
         before.size, [&](const Size3& voxel) { volume.intensities.push_back(PatternSource::value_at(voxel)); });
-    const DenseGroups expected = limited(before, reference::wanted(operation, before, volume), limits, locked);
+    const DenseGroups expected = limited(before, reference::wanted(operation, before, volume), limits, locked, spacing);
     apply(mask, result.changes);
     CHECK((dense_of(mask).groups == expected.groups));
     int64_t changed = 0;
@@ -147,6 +148,13 @@ inline OperationLimits random_limits(std::mt19937& random, const Size3& size)
     if (random() % 4 == 0) limits.inside = int64_t(random() % 5);
     limits.only_unpainted = random() % 4 == 0;
     if (random() % 3 == 0) limits.box = box_reaching_out_of(size);
+    if (random() % 3 == 0) {
+        const auto between = [&](double low, double high) {
+            return low + (high - low) * double(random()) / 4294967295.0;
+        };
+        limits.plane_normal = glm::dvec3(between(-2, 2), between(-2, 2), between(-2, 2));
+        limits.plane_point = glm::dvec3(size) * glm::dvec3(between(0.2, 0.8), between(0.2, 0.8), between(0.2, 0.8));
+    }
     return limits;
 }
 
