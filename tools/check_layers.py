@@ -117,7 +117,8 @@ MAY_INCLUDE = {
     "ui/files": "engine/base engine/remote engine/formats",
     "ui/thumbnails": "engine/base engine/workbench/models ui/files",
     "ui/panels/tools": "engine/workbench/models engine/workbench/actions engine/workbench/sight",
-    "ui/panels": "ui/thumbnails ui/panels/tools engine/base engine/session engine/session/words engine/workbench/appearance engine/workbench/curves engine/workbench/models "
+    "ui/panels/signs": "engine/workbench/appearance engine/workbench/bindings",
+    "ui/panels": "ui/thumbnails ui/panels/signs ui/panels/tools engine/base engine/session engine/session/words engine/workbench/appearance engine/workbench/curves engine/workbench/models "
     "engine/workbench/actions engine/workbench/lists engine/workbench/sight engine/workbench/edits "
     "engine/workbench/bindings",
     "ui/panels/look": "engine/session engine/workbench/curves engine/workbench/models engine/workbench/actions "

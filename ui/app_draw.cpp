@@ -22,19 +22,27 @@ ImU32 color_of(const glm::dvec3& linear, float alpha)
     return ImGui::GetColorU32(ImVec4(encoded(linear.r), encoded(linear.g), encoded(linear.b), alpha));
 }
 
-/// Draws marks and their texts. Texts have a dark background, so that they can be read on any picture.
+/// Draws a text with a rim, so that it can be read on any picture.
+void draw_rimmed(ImDrawList& list, const ImVec2& at, const glm::dvec3& ink, const char* text)
+{
+    const auto reach = int(rim_width(ImGui::GetFontSize()));
+    const ImU32 rim = color_of(rim_color(ink), 1.0f);
+    for (int y = -reach; y <= reach; y += reach)
+        for (int x = -reach; x <= reach; x += reach)
+            if (x != 0 || y != 0) list.AddText({at.x + float(x), at.y + float(y)}, rim, text);
+    list.AddText(at, color_of(ink, 1.0f), text);
+}
+
+/// Draws marks and their texts.
 template <class OnScreen>
 void draw_over(const Marks& marks, const OnScreen& on_screen, ImDrawList& list)
 {
-    constexpr float SPARE = 3.0f;
     for (const Stroke& stroke : marks.strokes)
         list.AddLine(on_screen(stroke.from), on_screen(stroke.to), color_of(stroke.color, 1.0f), float(stroke.width));
     for (const Label& label : marks.labels) {
         const ImVec2 size = ImGui::CalcTextSize(label.text.c_str()), at = on_screen(label.at);
         const ImVec2 begin{at.x - float(label.anchor.x) * size.x, at.y - float(label.anchor.y) * size.y};
-        list.AddRectFilled({begin.x - SPARE, begin.y - 1.0f}, {begin.x + size.x + SPARE, begin.y + size.y + 1.0f},
-                           IM_COL32(20, 20, 20, 170), SPARE);
-        list.AddText(begin, color_of(label.color, 1.0f), label.text.c_str());
+        draw_rimmed(list, begin, label.color, label.text.c_str());
     }
 }
 
@@ -98,7 +106,7 @@ void App::write_screen_texts() const
                            .is_sharp = bench_->is_open() && bench_->document().screen.complete(),
                            .is_kept = bench_->is_open() && !bench_->has_view_to_keep()};
     const std::filesystem::path written = options_.screen_texts.string() + ".new";
-    std::ofstream(written) << json_of(screen_texts(*drawn, *ImGui::GetIO().Fonts->Fonts[0]), frame);
+    std::ofstream(written) << json_of(screen_texts(*drawn, *ImGui::GetIO().Fonts), frame);
     std::filesystem::rename(written, options_.screen_texts);
 }
 

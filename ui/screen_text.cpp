@@ -28,22 +28,28 @@ struct Quad {
     Box place, texels;
 };
 
+/// A glyph and the font that has it.
+struct Found {
+    const ImFontGlyph* glyph = nullptr;
+    const ImFont* font = nullptr;
+};
+
 class Glyphs {
 public:
-    explicit Glyphs(const ImFont& font) : font_(font) {}
+    explicit Glyphs(const ImFontAtlas& atlas) : atlas_(atlas) {}
 
-    const ImFontGlyph* at(const Box& texels)
+    Found at(const Box& texels)
     {
         const glm::vec2 middle = 0.5f * (texels.begin + texels.end);
-        const auto [known, is_new] = known_.try_emplace(key_of(texels), nullptr);
+        const auto [known, is_new] = known_.try_emplace(key_of(texels));
         if (!is_new) return known->second;
-        for (const ImFontGlyph& glyph : font_.Glyphs)
-            if (glyph.Visible && middle.x > glyph.U0 && middle.x < glyph.U1 && middle.y > glyph.V0 &&
-                middle.y < glyph.V1)
-                known->second = &glyph;
+        for (const ImFont* font : atlas_.Fonts)
+            for (const ImFontGlyph& glyph : font->Glyphs)
+                if (glyph.Visible && middle.x > glyph.U0 && middle.x < glyph.U1 && middle.y > glyph.V0 &&
+                    middle.y < glyph.V1)
+                    known->second = {&glyph, font};
         return known->second;
     }
-    float space() const { return font_.GetCharAdvance(' '); }
 
 private:
     static uint64_t key_of(const Box& texels)
@@ -53,8 +59,8 @@ private:
         return (uint64_t(parts[0]) << 32 | parts[1]) ^ (uint64_t(parts[2]) * 0x9e3779b97f4a7c15u) ^ parts[3];
     }
 
-    const ImFont& font_;
-    std::unordered_map<uint64_t, const ImFontGlyph*> known_;
+    const ImFontAtlas& atlas_;
+    std::unordered_map<uint64_t, Found> known_;
 };
 
 std::string utf8_of(unsigned int character)
@@ -86,7 +92,7 @@ public:
 
     void add(const Quad& quad, const ImVec4& clip)
     {
-        const ImFontGlyph* const glyph = glyphs_.at(quad.texels);
+        const auto [glyph, font] = glyphs_.at(quad.texels);
         if (!glyph) return;
         // Reconstructs the quad of the whole glyph, of which clipping may have removed a part.
         const glm::vec2 scale = (quad.place.end - quad.place.begin) / (quad.texels.end - quad.texels.begin);
@@ -98,7 +104,7 @@ public:
         const glm::vec2 end = glm::min(quad.place.end, {clip.z, clip.w});
         const bool is_seen = begin.x < end.x && begin.y < end.y;
 
-        if (!continues(pen, top, size, is_seen)) begin_text(top);
+        if (font != font_ || !continues(pen, top, size, is_seen)) begin_text(top, *font);
         ScreenText* const text = has_text_ ? &texts_.back() : nullptr;
         // Characters entirely beyond the edge are not drawn, so a text cut between two characters is not detected.
         const bool is_cut = begin.x > whole_begin.x + CUT || end.x < whole_end.x - CUT;
@@ -124,25 +130,40 @@ private:
     bool continues(float pen, float top, float size, bool is_seen)
     {
         if (!has_text_ || std::abs(top - top_) > NEAR) return false;
-        const float spaces = (pen - next_pen_) / (glyphs_.space() * size);
+        const float space = font_->GetCharAdvance(' ') * size, spaces = (pen - next_pen_) / space;
         const float whole = std::round(spaces);
-        if (whole < 0.0f || whole > MAX_SPACES || std::abs(spaces - whole) * glyphs_.space() * size > NEAR)
-            return false;
+        if (whole < 0.0f || whole > MAX_SPACES || std::abs(spaces - whole) * space > NEAR) return false;
         if (is_seen) texts_.back().text.append(size_t(whole), ' ');
         return true;
     }
-    void begin_text(float top)
+    void begin_text(float top, const ImFont& font)
     {
         has_text_ = false;
         top_ = top;
+        font_ = &font;
     }
 
     std::string window_;
     std::vector<ScreenText>& texts_;
     Glyphs& glyphs_;
+    const ImFont* font_ = nullptr;  ///< of the present text
     bool has_text_ = false;
     float next_pen_ = 0.0f, top_ = 0.0f;
 };
+
+/// Removes texts that another covers: their rims (app_draw.cpp), which are the same texts some pixels away.
+void remove_rims(std::vector<ScreenText>& texts)
+{
+    constexpr float MOST = 3.0f;
+    std::vector<ScreenText> kept;
+    for (size_t i = 0; i < texts.size(); ++i) {
+        const bool is_rim = i + 1 < texts.size() && texts[i].text == texts[i + 1].text &&
+                            texts[i].window == texts[i + 1].window &&
+                            glm::all(glm::lessThan(glm::abs(texts[i].begin - texts[i + 1].begin), glm::vec2(MOST)));
+        if (!is_rim) kept.push_back(std::move(texts[i]));
+    }
+    texts = std::move(kept);
+}
 
 std::string quoted(const std::string& text)
 {
@@ -156,10 +177,10 @@ std::string quoted(const std::string& text)
 
 }  // namespace
 
-std::vector<ScreenText> screen_texts(const ImDrawData& drawn, const ImFont& font)
+std::vector<ScreenText> screen_texts(const ImDrawData& drawn, const ImFontAtlas& fonts)
 {
     std::vector<ScreenText> texts;
-    Glyphs glyphs(font);
+    Glyphs glyphs(fonts);
     for (int number = 0; number < drawn.CmdListsCount; ++number) {
         const ImDrawList& list = *drawn.CmdLists[number];
         Lines lines(list._OwnerName ? list._OwnerName : "", texts, glyphs);
@@ -172,6 +193,7 @@ std::vector<ScreenText> screen_texts(const ImDrawData& drawn, const ImFont& font
             }
         }
     }
+    remove_rims(texts);
     const glm::vec2 scale(drawn.FramebufferScale.x, drawn.FramebufferScale.y);
     for (ScreenText& text : texts) {
         text.begin *= scale;

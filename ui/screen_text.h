@@ -9,7 +9,7 @@
 #include <glm/glm.hpp>
 
 struct ImDrawData;
-struct ImFont;
+struct ImFontAtlas;
 
 namespace shvr::ui {
 
@@ -22,8 +22,9 @@ struct ScreenText {
     bool is_scrolled = false;    ///< partly above or below the visible part of its window
 };
 
-/// Returns the texts in the order of drawing: later ones cover earlier ones. Omits invisible characters.
-std::vector<ScreenText> screen_texts(const ImDrawData& drawn, const ImFont& font);
+/// Returns the texts in the order of drawing: later ones cover earlier ones. Omits invisible characters, and rims: a
+/// text that is drawn several times around one place is one text.
+std::vector<ScreenText> screen_texts(const ImDrawData& drawn, const ImFontAtlas& fonts);
 /// State of a frame, for tests that wait until it is reached.
 struct FrameState {
     uint64_t number = 0;

@@ -24,6 +24,23 @@ void for_each_covered(const Stamp& stamp, const PixelBox& pane, const PixelBox& 
 
 }  // namespace
 
+Stamp rim_of(const Stamp& ink, int width, const glm::dvec3& color)
+{
+    constexpr int OPAQUE = 255, RIM = 200;
+    Stamp rim{.begin = ink.begin - width, .pixels = ink.pixels + 2 * width, .coverage{}, .color = color};
+    rim.coverage.assign(size_t(rim.pixels.x) * size_t(rim.pixels.y), 0);
+    for (int y = 0; y < ink.pixels.y; ++y)
+        for (int x = 0; x < ink.pixels.x; ++x) {
+            const int covered = ink.coverage[size_t(x) + size_t(ink.pixels.x) * size_t(y)] * RIM / OPAQUE;
+            for (int dy = 0; covered > 0 && dy <= 2 * width; ++dy)
+                for (int dx = 0; dx <= 2 * width; ++dx) {
+                    uint8_t& pixel = rim.coverage[size_t(x + dx) + size_t(rim.pixels.x) * size_t(y + dy)];
+                    pixel = std::max(pixel, uint8_t(covered));
+                }
+        }
+    return rim;
+}
+
 void draw_stamps(ImageF& image, std::span<const Stamp> stamps, const PixelBox& pane, uint32_t first_row)
 {
     PixelBox rows = pane;

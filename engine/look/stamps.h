@@ -1,6 +1,6 @@
 #pragma once
-// Shapes of a single colour over a picture: text rasterized by the caller, and its background. They complement the
-// lines of overlay.h. Pure functions; any thread.
+// Shapes of a single colour over a picture: text rasterized by the caller, and its rim. They complement the lines of
+// overlay.h. Pure functions; any thread.
 
 #include <cstdint>
 #include <span>
@@ -17,6 +17,10 @@ struct Stamp {
     std::vector<uint8_t> coverage;  ///< row by row from the top; 255: fully the stamp's colour
     glm::dvec3 color{1.0};          ///< linear light
 };
+
+/// Returns what surrounds a stamp by some pixels, in another colour. Drawn before it, it makes a text readable on any
+/// picture.
+Stamp rim_of(const Stamp& ink, int width, const glm::dvec3& color);
 
 /// Draws stamps, in order, over premultiplied light. Their positions are relative to `pane`, a box of pixels of the
 /// picture, to which they are clipped. `image` holds some or all rows of the picture, from `first_row` on.

@@ -1,8 +1,10 @@
 // The font atlas: European letters and every other character that a text has used so far, from this machine's fonts.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -21,6 +23,15 @@ constexpr const char* FONTS[] = {"/usr/share/fonts/truetype/dejavu/DejaVuSans.tt
                                  "/usr/share/fonts/TTF/DejaVuSans.ttf",                // Arch
                                  "/usr/share/fonts/truetype/noto/NotoSans-Regular.ttf",
                                  "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf"};
+/// The font of headings, at the same places; without one, headings have the panels' font.
+constexpr const char* BOLD_FONTS[] = {
+    "/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf", "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans-Bold.ttf",
+    "/usr/share/fonts/TTF/DejaVuSans-Bold.ttf", "/usr/share/fonts/truetype/noto/NotoSans-Bold.ttf",
+    "/usr/share/fonts/truetype/liberation/LiberationSans-Bold.ttf"};
+/// Height of small texts, of the panels' font.
+constexpr double SMALL = 0.86;
+/// Headings and small texts are the program's own, in English.
+constexpr ImWchar ENGLISH[] = {0x20, 0xff, 0};
 /// Fonts tried in this order for characters that the panels' font lacks. They are large, so they are read only when
 /// such a character is needed.
 constexpr const char* FALLBACKS[] = {
@@ -39,6 +50,7 @@ constexpr const char* FALLBACKS[] = {
 GlyphSet known_glyphs;
 bool is_atlas_stale = false;
 std::vector<ImWchar> glyph_ranges;  // the atlas keeps a pointer to them
+std::array<ImFont*, 3> fonts{};     // by TextRole
 
 std::vector<ImWchar> ranges_of(const GlyphSet& glyphs)
 {
@@ -50,31 +62,39 @@ std::vector<ImWchar> ranges_of(const GlyphSet& glyphs)
 
 enum class For { screen, picture };
 
-bool add_font(ImFontAtlas& atlas, const char* path, float pixels, bool is_merged, For purpose,
-              const std::vector<ImWchar>& ranges)
+/// Returns null if there is no such file.
+ImFont* add_font(ImFontAtlas& atlas, const char* path, float pixels, bool is_merged, For purpose, const ImWchar* ranges)
 {
     std::error_code error;
-    if (!std::filesystem::is_regular_file(path, error)) return false;
+    if (!std::filesystem::is_regular_file(path, error)) return nullptr;
     ImFontConfig config;
     config.MergeMode = is_merged;
     if (is_merged || purpose == For::picture) config.OversampleH = 1;  // an atlas pixel is a picture pixel
-    return atlas.AddFontFromFileTTF(path, pixels, &config, ranges.data()) != nullptr;
+    return atlas.AddFontFromFileTTF(path, pixels, &config, ranges);
+}
+
+/// Adds the first of the fonts that this machine has; null if it has none.
+ImFont* add_first(ImFontAtlas& atlas, std::span<const char* const> paths, double pixels, For purpose,
+                  const ImWchar* ranges)
+{
+    const float size = float(std::max(1.0, std::round(pixels)));
+    for (const char* path : paths)
+        if (ImFont* const font = add_font(atlas, path, size, false, purpose, ranges)) return font;
+    return nullptr;
 }
 
 /// `ranges`: those of `glyphs`; must outlive the atlas.
 void fill(ImFontAtlas& atlas, double pixels, For purpose, const GlyphSet& glyphs, const std::vector<ImWchar>& ranges)
 {
     const float size = float(std::max(1.0, std::round(pixels)));
-    const bool is_found = std::ranges::any_of(
-        FONTS, [&](const char* path) { return add_font(atlas, path, size, false, purpose, ranges); });
-    if (!is_found) {
+    if (!add_first(atlas, FONTS, pixels, purpose, ranges.data())) {
         ImFontConfig config;
         config.SizePixels = size;
         config.OversampleH = 1;
         atlas.AddFontDefault(&config);
     }
     if (glyphs.has_rare())
-        for (const char* path : FALLBACKS) add_font(atlas, path, size, true, purpose, ranges);
+        for (const char* path : FALLBACKS) add_font(atlas, path, size, true, purpose, ranges.data());
 }
 
 /// Returns the next character of a UTF-8 text and its length in bytes. An invalid byte counts as one character.
@@ -132,8 +152,21 @@ void load_fonts(double pixels)
     atlas.Clear();
     glyph_ranges = ranges_of(known_glyphs);
     fill(atlas, pixels, For::screen, known_glyphs, glyph_ranges);
+    fonts = {atlas.Fonts[0], add_first(atlas, BOLD_FONTS, pixels, For::screen, ENGLISH),
+             add_first(atlas, FONTS, SMALL * pixels, For::screen, ENGLISH)};
     build_with_thumbnails(atlas);
     is_atlas_stale = false;
+}
+
+TextIn::TextIn(TextRole role)
+{
+    ImFont* const font = fonts[size_t(role)];
+    ImGui::PushFont(font ? font : fonts[0]);
+}
+
+TextIn::~TextIn()
+{
+    ImGui::PopFont();
 }
 
 std::vector<TextImage> draw_texts(std::span<const std::string> texts, double pixels)

@@ -11,6 +11,7 @@
 
 #include "engine/workbench/appearance/panel_rows.h"
 #include "engine/workbench/bindings/preferences_file.h"
+#include "ui/panels/signs/signs.h"
 #include "ui/panels/style.h"
 #include "ui/panels/widgets.h"
 
@@ -85,13 +86,27 @@ bool header_button(HeaderSign sign, float right, const char* text)
     return is_clicked;
 }
 
+/// Draws the sign and the title of a panel over its header, after the header's arrow.
+void panel_title(const PanelRow& row)
+{
+    const TextIn heading(TextRole::heading);
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const ImVec2 begin = ImGui::GetItemRectMin();
+    const float size = ImGui::GetFontSize();
+    const ImVec2 at{begin.x + 2.0f * style.FramePadding.x + 1.25f * size, begin.y + style.FramePadding.y};
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    draw_sign(row.id, {list, at, size, shade_of(ColorRole::faint_text)});
+    list.AddText({at.x + size + style.ItemInnerSpacing.x, at.y}, shade_of(ColorRole::text), row.title);
+}
+
 void section(const PanelRow& row, const Model& model, Actions& actions)
 {
     const bool was_open = !is_folded(row, model);
     ImGui::PushID(row.id);
     ImGui::SetNextItemOpen(was_open, ImGuiCond_Always);
     const float right = ImGui::GetContentRegionMax().x;
-    const bool is_open = ImGui::CollapsingHeader(row.title, ImGuiTreeNodeFlags_AllowItemOverlap);
+    const bool is_open = ImGui::CollapsingHeader("##open", ImGuiTreeNodeFlags_AllowItemOverlap);
+    panel_title(row);
     if (is_open != was_open) change(row, {.folded = !is_open}, actions);
     const float size = ImGui::GetFrameHeight();
     if (header_button(HeaderSign::float_out, right - size, "A window of its own"))

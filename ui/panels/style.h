@@ -27,6 +27,18 @@ void set_style(const Appearance& appearance);
 /// Fills the font atlas (fonts.cpp).
 void load_fonts(double pixels);
 
+/// The panels' text; headings, which are bold; and small texts, for what is read once. The latter two have only the
+/// characters of English.
+enum class TextRole { body, heading, small };
+/// Texts that are drawn during its life are in the font of their role.
+class TextIn {
+public:
+    explicit TextIn(TextRole role);
+    ~TextIn();
+    TextIn(const TextIn&) = delete;
+    TextIn& operator=(const TextIn&) = delete;
+};
+
 /// Renders texts in the interface's fonts, `pixels` high, for picture files (figure.h).
 std::vector<TextImage> draw_texts(std::span<const std::string> texts, double pixels);
 

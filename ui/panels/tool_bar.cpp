@@ -12,6 +12,7 @@
 #include "engine/workbench/edits/edit.h"
 #include "engine/workbench/edits/group_steps.h"
 #include "ui/panels/panels.h"
+#include "ui/panels/signs/signs.h"
 #include "ui/panels/style.h"
 #include "ui/panels/tools/outline_tool.h"
 #include "ui/panels/tools/point_tool.h"
@@ -23,81 +24,6 @@ namespace {
 
 constexpr float NAMED_FROM = 74.0f;   ///< minimum width, in font sizes, at which tools show their names
 constexpr float GROUP_WIDTH = 13.0f;  ///< width of the active group's name, in font sizes
-
-/// Draws icons in a square at `corner`, with coordinates in units of the square's side.
-struct Pen {
-    ImDrawList& list;
-    ImVec2 corner;
-    float size;
-    ImU32 color;
-
-    ImVec2 at(float x, float y) const { return {corner.x + x * size, corner.y + y * size}; }
-    float stroke() const { return std::max(1.3f, 0.09f * size); }
-    void line(float ax, float ay, float bx, float by) const { list.AddLine(at(ax, ay), at(bx, by), color, stroke()); }
-    void disc(float x, float y, float radius) const { list.AddCircleFilled(at(x, y), radius * size, color); }
-    void ring(float x, float y, float radius) const { list.AddCircle(at(x, y), radius * size, color, 0, stroke()); }
-};
-
-void draw_turn(const Pen& pen)
-{
-    constexpr float RADIUS = 0.34f, FROM = -0.6f, TO = 4.1f;
-    pen.list.PathArcTo(pen.at(0.5f, 0.52f), RADIUS * pen.size, FROM, TO, 24);
-    pen.list.PathStroke(pen.color, ImDrawFlags_None, pen.stroke());
-    const float x = 0.5f + RADIUS * std::cos(FROM), y = 0.52f + RADIUS * std::sin(FROM);
-    pen.list.AddTriangleFilled(pen.at(x - 0.2f, y - 0.02f), pen.at(x + 0.14f, y + 0.06f), pen.at(x + 0.08f, y - 0.28f),
-                               pen.color);
-}
-
-void draw_paint(const Pen& pen)
-{
-    pen.line(0.9f, 0.1f, 0.52f, 0.5f);
-    pen.list.AddTriangleFilled(pen.at(0.44f, 0.42f), pen.at(0.6f, 0.58f), pen.at(0.1f, 0.92f), pen.color);
-    pen.disc(0.36f, 0.66f, 0.15f);
-}
-
-void draw_erase(const Pen& pen)
-{
-    const ImVec2 block[] = {pen.at(0.1f, 0.62f), pen.at(0.52f, 0.18f), pen.at(0.82f, 0.44f), pen.at(0.42f, 0.88f)};
-    pen.list.AddPolyline(block, 4, pen.color, ImDrawFlags_Closed, pen.stroke());
-    pen.line(0.3f, 0.4f, 0.62f, 0.67f);
-    pen.line(0.42f, 0.9f, 0.95f, 0.9f);
-}
-
-void draw_trace(const Pen& pen)
-{
-    pen.line(0.16f, 0.8f, 0.42f, 0.36f);
-    pen.line(0.42f, 0.36f, 0.84f, 0.2f);
-    pen.disc(0.16f, 0.8f, 0.13f);
-    pen.disc(0.42f, 0.36f, 0.13f);
-    pen.disc(0.84f, 0.2f, 0.13f);
-}
-
-void draw_select(const Pen& pen)
-{
-    const ImVec2 arrow[] = {pen.at(0.26f, 0.08f), pen.at(0.26f, 0.8f),  pen.at(0.44f, 0.63f), pen.at(0.57f, 0.92f),
-                            pen.at(0.69f, 0.86f), pen.at(0.56f, 0.58f), pen.at(0.8f, 0.56f)};
-    pen.list.AddPolyline(arrow, 7, pen.color, ImDrawFlags_Closed, pen.stroke());
-}
-
-void draw_measure(const Pen& pen)
-{
-    pen.line(0.1f, 0.3f, 0.1f, 0.7f);
-    pen.line(0.9f, 0.3f, 0.9f, 0.7f);
-    pen.line(0.1f, 0.5f, 0.9f, 0.5f);
-    for (const float x : {0.3f, 0.5f, 0.7f}) pen.line(x, 0.5f, x, 0.62f);
-}
-
-void draw_sign(Tool tool, const Pen& pen)
-{
-    switch (tool) {
-        case Tool::turn: return draw_turn(pen);
-        case Tool::paint: return draw_paint(pen);
-        case Tool::erase: return draw_erase(pen);
-        case Tool::trace: return draw_trace(pen);
-        case Tool::select: return draw_select(pen);
-        case Tool::measure: return draw_measure(pen);
-    }
-}
 
 /// Returns the tooltip of a tool: its name, its key, and the effect of a click.
 std::string explanation(const ToolRow& row, const Keymap& keymap)
@@ -249,6 +175,7 @@ void mouse_words(const Model& model)
                                        : mouse_in_words(model.tool(), over, model.preferences.key_set);
     ImGui::SameLine(0.0f, ImGui::GetFontSize());
     ImGui::AlignTextToFramePadding();
+    const TextIn small(TextRole::small);
     ImGui::TextDisabled("Mouse  %s", words.c_str());
     hint(sentence(words, "\n", row_of(model.tool()).hint, "\nAlt + left drag turns, Shift + left drag moves.").c_str());
 }

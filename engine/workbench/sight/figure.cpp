@@ -7,17 +7,6 @@ namespace shvr::ui {
 
 namespace {
 
-constexpr uint8_t GROUND = 236;  ///< opacity (of 255, in linear light) that looks as dark on white as in the window
-constexpr glm::dvec3 GROUND_COLOR(0.007);
-
-Stamp ground_of(const Stamp& words, double units)
-{
-    const glm::ivec2 spare(int(std::lround(3.0 * units)), int(std::lround(units)));
-    Stamp ground{.begin = words.begin - spare, .pixels = words.pixels + 2 * spare, .coverage{}, .color = GROUND_COLOR};
-    ground.coverage.assign(size_t(ground.pixels.x) * size_t(ground.pixels.y), GROUND);
-    return ground;
-}
-
 std::vector<Stamp> stamps_of(const std::vector<Label>& labels, double units, const TextDrawer& draw_texts)
 {
     std::vector<std::string> texts;
@@ -30,7 +19,7 @@ std::vector<Stamp> stamps_of(const std::vector<Label>& labels, double units, con
                     .pixels = images[i].pixels,
                     .coverage = std::move(images[i].coverage),
                     .color = labels[i].color};
-        stamps.push_back(ground_of(words, units));
+        stamps.push_back(rim_of(words, int(rim_width(FONT_UNITS * units)), rim_color(words.color)));
         stamps.push_back(std::move(words));
     }
     return stamps;

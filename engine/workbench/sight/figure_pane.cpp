@@ -11,7 +11,7 @@ namespace shvr::ui {
 namespace {
 
 constexpr glm::dvec3 BLACK(0.0), WHITE(1.0);
-constexpr uint8_t OPAQUE = 255, RIM = 200;
+constexpr uint8_t OPAQUE = 255;
 
 }  // namespace
 
@@ -26,7 +26,7 @@ FigurePane::FigurePane(const PixelBox& box, const glm::dvec4& background, double
 
 double FigurePane::rim_width() const
 {
-    return std::max(1.0, std::round(line_ / 12.0));
+    return ui::rim_width(line_);
 }
 
 bool FigurePane::is_free(const Box& box) const
@@ -71,7 +71,7 @@ void FigurePane::write(const std::vector<Words>& words, double height)
                   .pixels = images[i].pixels,
                   .coverage = std::move(images[i].coverage),
                   .color = ink_};
-        part_.stamps.push_back(rim_of(ink));
+        part_.stamps.push_back(rim_of(ink, int(rim_width()), rim_));
         part_.stamps.push_back(std::move(ink));
     }
 }
@@ -81,23 +81,6 @@ double FigurePane::widest_of(std::span<const std::string> texts, double height) 
     double widest = 0.0;
     for (const double width : widths_of(texts, height, draw_texts_)) widest = std::max(widest, width);
     return widest;
-}
-
-Stamp FigurePane::rim_of(const Stamp& ink) const
-{
-    const int grown = int(rim_width());
-    Stamp rim{.begin = ink.begin - grown, .pixels = ink.pixels + 2 * grown, .coverage{}, .color = rim_};
-    rim.coverage.assign(size_t(rim.pixels.x) * size_t(rim.pixels.y), 0);
-    for (int y = 0; y < ink.pixels.y; ++y)
-        for (int x = 0; x < ink.pixels.x; ++x) {
-            const int covered = ink.coverage[size_t(x) + size_t(ink.pixels.x) * size_t(y)] * RIM / OPAQUE;
-            for (int dy = 0; covered > 0 && dy <= 2 * grown; ++dy)
-                for (int dx = 0; dx <= 2 * grown; ++dx) {
-                    uint8_t& pixel = rim.coverage[size_t(x + dx) + size_t(rim.pixels.x) * size_t(y + dy)];
-                    pixel = std::max(pixel, uint8_t(covered));
-                }
-        }
-    return rim;
 }
 
 }  // namespace shvr::ui

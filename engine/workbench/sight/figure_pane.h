@@ -47,9 +47,6 @@ public:
     Figure::Part take_part() { return std::move(part_); }
 
 private:
-    /// Returns the shape, grown by the width of the rim.
-    Stamp rim_of(const Stamp& ink) const;
-
     glm::dvec2 size_;
     double line_;
     const TextDrawer& draw_texts_;

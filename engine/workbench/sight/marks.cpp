@@ -21,6 +21,11 @@ constexpr std::array<glm::dvec3, 3> AXES{glm::dvec3(0.95, 0.12, 0.08), glm::dvec
                                          glm::dvec3(0.15, 0.4, 1.0)};
 constexpr double DASH = 6.0, GAP = 5.0;
 
+double luminance_of(const glm::dvec3& linear)
+{
+    return glm::dot(linear, glm::dvec3(0.2126, 0.7152, 0.0722));
+}
+
 /// Returns a name cut to at most MOST characters, without splitting a UTF-8 sequence.
 std::string shortened_name(const std::string& name)
 {
@@ -121,9 +126,17 @@ private:
                 marks_.strokes.push_back(
                     {corner(i), corner(i + 1), is_halo ? DARK : color, (is_halo ? 6.0 : 4.0) * units_});
     }
-    void label(const glm::dvec2& at, const glm::dvec2& anchor, std::string text, const glm::dvec3& color = LIGHT)
+    void label(const glm::dvec2& at, const glm::dvec2& anchor, std::string text,
+               const std::optional<glm::dvec3>& color = {})
     {
-        marks_.labels.push_back({at, anchor, std::move(text), color});
+        marks_.labels.push_back({at, anchor, std::move(text), color.value_or(ink())});
+    }
+    /// Stands out from what is around the scan: the background, or in slices the dark of the air.
+    glm::dvec3 ink() const
+    {
+        const glm::dvec4& background = model_.session.render.background;
+        const bool is_light = !is_slice() && (background.a < 0.5 || luminance_of(glm::dvec3(background)) > 0.18);
+        return is_light ? DARK : LIGHT;
     }
 
     /// Draws the outline of the brush where it intersects the plane of the pane.
@@ -352,12 +365,11 @@ private:
         const ScaleBar bar = scale_bar(unit, std::min(140.0 * units_, 0.3 * double(pixels_.x)), model_.volume.unit);
         if (bar.pixels < 8.0 * units_) return;
         const glm::dvec2 end(double(pixels_.x) - 16.0 * units_, double(pixels_.y) - 14.0 * units_);
-        const glm::dvec2 begin = end - glm::dvec2(bar.pixels, 0.0), tick(0.0, 4.0 * units_);
-        const std::array bar_lines{std::pair(begin, end), std::pair(begin - tick, begin + tick),
-                                   std::pair(end - tick, end + tick)};
-        for (const auto& [from, to] : bar_lines) marks_.strokes.push_back({from, to, DARK, 7.0 * units_});
-        for (const auto& [from, to] : bar_lines) marks_.strokes.push_back({from, to, LIGHT, 3.0 * units_});
-        label(end - 1.5 * tick, {1.0, 1.0}, bar.text + (is_perspective ? " at the middle of the view" : ""));
+        const glm::dvec2 begin = end - glm::dvec2(bar.pixels, 0.0), rim(units_, 0.0);
+        marks_.strokes.push_back({begin - rim, end + rim, rim_color(ink()), 5.0 * units_});
+        marks_.strokes.push_back({begin, end, ink(), 3.0 * units_});
+        label(end - glm::dvec2(0.0, 5.0 * units_), {1.0, 1.0},
+              bar.text + (is_perspective ? " at the middle of the view" : ""));
     }
 
     /// Lists the groups that are painted or traced, in the upper right corner of the first pane. Each colour stands to
@@ -442,6 +454,16 @@ private:
 };
 
 }  // namespace
+
+glm::dvec3 rim_color(const glm::dvec3& ink)
+{
+    return luminance_of(ink) > 0.18 ? DARK : LIGHT;
+}
+
+double rim_width(double font_pixels)
+{
+    return std::max(1.0, std::round(font_pixels / 12.0));
+}
 
 Marks marks_of(const Model& model, const Pane& pane, size_t index, double units, MarksFor purpose)
 {

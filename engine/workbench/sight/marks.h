@@ -21,6 +21,10 @@ struct Label {
     std::string text;
     glm::dvec3 color{1.0};  ///< linear light
 };
+/// Texts over pictures have a rim, so that they can be read on any picture: dark around a light ink, else light. Its
+/// width in pixels, for a font of this height.
+glm::dvec3 rim_color(const glm::dvec3& ink);
+double rim_width(double font_pixels);
 struct Marks {
     std::vector<Stroke> strokes;
     std::vector<Label> labels;

@@ -30,7 +30,7 @@ std::vector<ScreenText> drawn(const std::function<void()>& draw)
         draw();
         ImGui::End();
         ImGui::Render();
-        texts = screen_texts(*ImGui::GetDrawData(), *io.Fonts->Fonts[0]);
+        texts = screen_texts(*ImGui::GetDrawData(), *io.Fonts);
     }
     ImGui::DestroyContext(context);
     return texts;

@@ -249,6 +249,7 @@ void use_mouse(const CurveAxes& axes, const Model& model, CurveState& state, Act
 /// Draws the numbers of the horizontal axis below it or, while the mouse is over the curve, what is under the mouse.
 void axis_row(const CurveAxes& axes, const Model& model, bool is_hovered)
 {
+    const TextIn small(TextRole::small);
     const bool is_whole = !is_float(model.volume.type);
     const auto words_of = [&](double intensity) {
         char text[32];
