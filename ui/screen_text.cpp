@@ -146,7 +146,7 @@ private:
     std::string window_;
     std::vector<ScreenText>& texts_;
     Glyphs& glyphs_;
-    const ImFont* font_ = nullptr;  ///< of the present text
+    const ImFont* font_ = nullptr;  ///< the font of the present text
     bool has_text_ = false;
     float next_pen_ = 0.0f, top_ = 0.0f;
 };

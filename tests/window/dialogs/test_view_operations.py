@@ -82,6 +82,8 @@ class Operations(Operating):
         self.check_follows(lambda: self.click_on("Cut plane", "Tools"), "oblique_cut")
         self.choose_operation("Grow")
         self.assertIn(" painted in ", self.see("Grow: ", OPERATIONS)["text"])
+        self.see("Voxels behind cutting planes change, too.", OPERATIONS)
+        self.assertFalse(self.seen("Plane normal", OPERATIONS))   # the row Where states the plane
         self.choose_of("Where", "the whole scan", "the visible part (cutting planes)")
         self.until(lambda: len(self.previewed().get("plane_normal", [])) == 3, "the plane among the limits")
         self.assertEqual(len(self.previewed()["plane_point"]), 3)

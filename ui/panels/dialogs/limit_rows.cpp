@@ -113,6 +113,13 @@ void region_rows(const Model& model, const std::optional<glm::dvec3>& clicked)
         ImGui::EndCombo();
     }
     hint("Voxels elsewhere do not change");
+    const CutBox& cut = model.session.cut;
+    const bool hides = cut.plane_normal || glm::any(glm::greaterThan(cut.lower, glm::dvec3(0.0))) ||
+                       glm::any(glm::lessThan(cut.upper, glm::dvec3(model.volume.size)));
+    if (limits_form.region == Region::everywhere && hides) {
+        field_name("");
+        ImGui::TextDisabled("Voxels behind cutting planes change, too.");
+    }
     if (limits_form.region != Region::box) return;
     if (clicked && std::exchange(limits_form.awaits_click, false)) place_box(*clicked, model);
     box_rows(model);

@@ -97,9 +97,9 @@ void draw_choice()
 
 void draw_operation(GroupOperation& operation, const Model& model)
 {
-    constexpr std::string_view ROWS_OF_THEIR_OWN[]{"distance", "wall",       "tolerance",     "margin", "group",
-                                                   "with",     "inside",     "keep",          "voxels", "mm3",
-                                                   "at",       "split_from", "only_unpainted"};
+    constexpr std::string_view ROWS_OF_THEIR_OWN[]{
+        "distance", "wall", "tolerance", "margin",     "group",          "with",         "inside",     "keep",
+        "voxels",   "mm3",  "at",        "split_from", "only_unpainted", "plane_normal", "plane_point"};
     state.why_no_groups.clear();
     state.why_no_limits.clear();
     const std::optional<glm::dvec3> clicked = point_tool().take(model.probe_voxel);
