@@ -1,11 +1,13 @@
 #include "engine/workbench/services/opener.h"
 
 #include <chrono>
+#include <limits>
 #include <thread>
 
 #include "engine/base/text.h"
 #include "engine/remote/address.h"
 #include "engine/session/first_look.h"
+#include "engine/session/looks/new_scan.h"
 #include "engine/session/picture_session.h"
 #include "engine/session/session_keys.h"
 #include "engine/session/session_patch.h"
@@ -31,6 +33,15 @@ std::filesystem::path opened_for_picture(const std::filesystem::path& path, cons
     if (!opened.pictured.empty() && std::filesystem::exists(opened.pictured, ignored)) return opened.pictured;
     const bool has_file = !opened.session.procedural && !opened.session.raw_layout;
     return has_file ? opened.session.volume_path : std::filesystem::path();
+}
+
+/// Returns whether a scan is opened for which no settings were ever saved: a file, or a project without a session.
+bool is_new(const std::filesystem::path& input)
+{
+    std::error_code ignored;
+    const std::filesystem::path session = session_file_of(input);
+    return (session.empty() && !session_in_picture(input)) ||
+           (!session.empty() && !std::filesystem::exists(session, ignored));
 }
 
 /// Returns the session saved next to a volume, so that opening the scan continues that session. Empty if no session is
@@ -136,6 +147,11 @@ void Opener::read_next()
             pictured = std::move(opened.session);
             input = of;
             opened = open_session_for_first_look(input, settings, options);
+        }
+        if (goes_on && !pictured && is_new(input)) {
+            const bool is_cpu = renderer.device().traits().is_cpu;
+            light_new_scan(opened.session, opened.source->info().size,
+                           is_cpu ? MAX_OCCLUDED_BY_CPU : std::numeric_limits<int64_t>::max(), settings);
         }
         const bool is_far = leads_to_network(opened.session.volume_path);  // label images there are asked for no voxels
         std::string labels = goes_on && !is_far ? why_labels(input, *opened.source, opened.statistics) : std::string();

@@ -1,0 +1,20 @@
+#pragma once
+// The look of a scan that is shown for the first time. Pure; any thread.
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "engine/session/session.h"
+
+namespace shvr {
+
+/// Most voxels of a scan that gets ambient occlusion by itself on a device that is the processor: 256^3 take about
+/// 0.4 s there (shaders/MEASURED.md), before the sharp picture.
+inline constexpr int64_t MAX_OCCLUDED_BY_CPU = int64_t{1} << 24;
+
+/// Gives the light of the examples and, to at most `most_occluded` voxels, ambient occlusion. Leaves the light as it is
+/// if any of the settings, "KEY=VALUE", states a part of it.
+void light_new_scan(Session& session, const Size3& size, int64_t most_occluded, std::span<const std::string> settings);
+
+}  // namespace shvr
