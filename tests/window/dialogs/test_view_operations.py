@@ -70,7 +70,8 @@ class Operations(Operating):
         self.until(lambda: self.previewed().get("inside") == 0, "inside unpainted voxels")
         self.choose_of("Where", "the whole scan", "a box")
         self.until(lambda: len(self.previewed().get("box", [])) == 6, "a box")
-        word = self.see_at_rest("Intensities", OPERATIONS)   # its check box, which the box's rows have moved
+        self.see_frames(3)   # the box's rows have made the window higher, which then moves up
+        word = self.see_at_rest("Intensities", OPERATIONS)
         self.do("mousemove", word["box"][0] + 9 * 14 + 8, self.middle_of(word)[1], pause_s=0)
         self.see_frames()
         self.do("click", 1, pause_s=0)
