@@ -195,6 +195,8 @@ public:
     };
     /// Null for resident volumes.
     virtual std::optional<Counts> counts() const = 0;
+    /// The bricks on the host, for another volume of the same source; null for resident volumes.
+    virtual std::shared_ptr<BrickStore> host_bricks() const = 0;
 
 protected:
     DeviceVolume(VolumeInfo info, const IntensityWindow& window) : info_(std::move(info)), window_(window) {}

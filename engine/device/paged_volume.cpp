@@ -82,7 +82,8 @@ PagedVolume::PagedVolume(gpu::Executor& executor, gpu::Memory& memory, std::shar
       slots_(atlas_.slot_count(), [this](const BrickKey& key) { return need_of(key); }),
       known_(info(), levels_, window, source_),
       lister_(known_),
-      store_(*source_, window, options.host_bytes, options.threads)
+      store_(options.host_bricks ? options.host_bricks
+                                 : std::make_shared<BrickStore>(*source_, window, options.host_bytes, options.threads))
 {
     cell_leap_ = memory.create("cell leap", image_desc(Format::r8_uint, atlas_.slots() * gpu::BRICK_CELLS),
                                gpu::Placement::device, "the volume");
@@ -106,11 +107,11 @@ void PagedVolume::pin_coarse_levels()
         if (level < levels_ - 1) continue;
         if (options_.in_slices) {
             coarsest_ = coarsest_left_ = coarse_.size();
-            store_.want(coarse_);
+            store_->want(coarse_);
             continue;
         }
         for (const BrickKey& key : coarse_)
-            if (const BrickStore::Texels texels = store_.get(key)) place(key, *texels, true);
+            if (const BrickStore::Texels texels = store_->get(key)) place(key, *texels, true);
         atlas_.flush();
     }
 }
@@ -118,7 +119,7 @@ void PagedVolume::pin_coarse_levels()
 bool PagedVolume::load_on(double /*seconds*/)
 {
     if (coarsest_left_ == 0) return true;
-    const std::vector<BrickStore::Finished> finished = store_.take(BrickAtlas::BATCH);
+    const std::vector<BrickStore::Finished> finished = store_->take(BrickAtlas::BATCH);
     for (const BrickStore::Finished& brick : finished) {
         if (brick.texels) place(brick.key, *brick.texels, true);
         --coarsest_left_;
@@ -202,7 +203,7 @@ DeviceVolume::Presence PagedVolume::state_of(const BrickKey& key) const
 {
     if (slots_.contains(key)) return Presence::there;
     if (known_.is_empty(sight(), key)) return Presence::empty;
-    return store_.failure_of(key) ? Presence::failed : Presence::missing;
+    return store_->failure_of(key) ? Presence::failed : Presence::missing;
 }
 
 int64_t PagedVolume::mask_index(const glm::ivec3& brick) const

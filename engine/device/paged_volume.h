@@ -40,6 +40,9 @@ public:
         uint64_t device_bytes = 0;  ///< budget of the atlas and its tables
         bool in_slices = false;     ///< the constructor does not read the coarsest level; `load_on` loads it in time
                                     ///< slices
+        /// Bricks that an earlier volume of the same source keeps on the host. With these, the volume may be used
+        /// before it is loaded: what is missing shows nothing until it arrives, as other bricks do.
+        std::shared_ptr<BrickStore> host_bricks{};
     };
     /// Reads the coarsest level. Fails if the budget holds too few bricks to work with.
     PagedVolume(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
@@ -75,7 +78,7 @@ public:
     std::vector<VoxelBox> advance(bool wait = false, const Progress& progress = {}) override;
     State state() const override;
     size_t missing() const override;
-    std::vector<std::string> take_messages() override { return store_.take_messages(); }
+    std::vector<std::string> take_messages() override { return store_->take_messages(); }
     bool is_drawn(const BrickKey& key) const override { return leaf_is_reached(key); }
     void want_around(const std::vector<int>& reach) override;
     void prefer(const VoxelBox& voxels) override;
@@ -95,6 +98,7 @@ public:
     VolumeBinding atlas(FrameGraph& graph) override;
     std::optional<RegionBricks> region(const VoxelBox& voxels, bool wait) override;
     std::optional<Counts> counts() const override;
+    std::shared_ptr<BrickStore> host_bricks() const override { return store_; }
 
 private:
     PageView rounded(PageView view) const;
@@ -184,7 +188,7 @@ private:
     size_t coarsest_ = 0, coarsest_left_ = 0;  ///< number of bricks that `load_on` has to load, and how many remain
     std::vector<BrickKey> leap_jobs_;
 
-    BrickStore store_;  ///< declared last: loaders stop before the members they read are destroyed
+    std::shared_ptr<BrickStore> store_;  ///< declared last: loaders stop before the source that they read is destroyed
 };
 
 }  // namespace shvr

@@ -181,12 +181,12 @@ void PagedVolume::renew(std::span<const VoxelBox> changed)
 {
     const std::vector<BrickKey> keys = bricks_of_all_levels(changed), read = read_to_renew(changed);
     const std::unordered_set<BrickKey, BrickKeyHash> now(read.begin(), read.end());
-    store_.renew(keys);
+    store_->renew(keys);
     for (const BrickKey& key : keys) {
         note({key, BrickEvent::Kind::unread});
         const std::optional<uint32_t> slot = slots_.find(key);
         if (!slot) continue;
-        if (const BrickStore::Texels texels = now.contains(key) ? store_.get(key) : nullptr) {
+        if (const BrickStore::Texels texels = now.contains(key) ? store_->get(key) : nullptr) {
             note(KnownBricks::read(key, texels->range));
             stage(key, *slot, *texels);
         } else {
@@ -243,9 +243,9 @@ void PagedVolume::update_wants()
     if (!std::exchange(wants_are_stale_, false)) return;
     std::vector<BrickKey> needed;
     for (const BrickKey& key : region_)
-        if (!slots_.contains(key) && !store_.failure_of(key)) needed.push_back(key);
+        if (!slots_.contains(key) && !store_->failure_of(key)) needed.push_back(key);
     for (const BrickKey& key : coarse_)
-        if (!slots_.contains(key) && !store_.failure_of(key)) needed.push_back(key);
+        if (!slots_.contains(key) && !store_->failure_of(key)) needed.push_back(key);
     std::vector<BrickKey> keys = needed;
     is_limited_ = !list_wants(keys);
     if (is_limited_ && std::ranges::find(was_reached_, true) != was_reached_.end()) {
@@ -256,7 +256,7 @@ void PagedVolume::update_wants()
         keys = std::move(needed);
         is_limited_ = !list_wants(keys);
     }
-    store_.want(std::move(keys));
+    store_->want(std::move(keys));
 }
 
 std::vector<VoxelBox> PagedVolume::advance(bool wait, const Progress& progress)
@@ -268,7 +268,7 @@ std::vector<VoxelBox> PagedVolume::advance(bool wait, const Progress& progress)
         do {
             take_bricks(changed);
             tell(progress, 1.0 - double(pending_) / double(wanted));
-        } while (wait && store_.wait());
+        } while (wait && store_->wait());
         atlas_.flush();
     } catch (...) {
         needs_changed();  // bricks that were taken but not placed are requested again
@@ -279,7 +279,7 @@ std::vector<VoxelBox> PagedVolume::advance(bool wait, const Progress& progress)
 
 void PagedVolume::take_bricks(std::vector<VoxelBox>& changed)
 {
-    for (const BrickStore::Finished& finished : store_.take(BrickAtlas::BATCH)) {
+    for (const BrickStore::Finished& finished : store_->take(BrickAtlas::BATCH)) {
         pending_ -= std::min<size_t>(pending_, leaf_is_reached(finished.key) || around_.contains(finished.key));
         const bool for_region =
             region_.contains(finished.key) || std::ranges::find(coarse_, finished.key) != coarse_.end();
@@ -346,13 +346,13 @@ std::optional<RegionBricks> PagedVolume::region(const VoxelBox& voxels, bool wai
     bool all_there = true;
     for (const BrickKey& key : keys) {
         if (!slots_.contains(key) && wait) {
-            const BrickStore::Texels texels = store_.get(key);
-            if (!texels) throw Error(store_.failure_of(key).value_or(info().name + ": a brick cannot be read"));
+            const BrickStore::Texels texels = store_->get(key);
+            if (!texels) throw Error(store_->failure_of(key).value_or(info().name + ": a brick cannot be read"));
             SHVR_CHECK(place(key, *texels, true), "room was counted");
         }
         const std::optional<uint32_t> slot = slots_.find(key);
         if (!slot)
-            if (const std::optional<std::string> failure = store_.failure_of(key)) throw Error(*failure);
+            if (const std::optional<std::string> failure = store_->failure_of(key)) throw Error(*failure);
         all_there = all_there && slot.has_value();
         region.slots.push_back(slot ? atlas_.packed(*slot) : gpu::NO_SLOT);
     }
@@ -427,9 +427,9 @@ std::optional<DeviceVolume::Counts> PagedVolume::counts() const
                   .leaves_looked_up = leaves_looked_up_,
                   .directory_bytes = directory_bytes_,
                   .waits_for_lists = lister_.waits(),
-                  .host_bytes = store_.bytes(),
-                  .peak_host_bytes = store_.peak_bytes(),
-                  .store = store_.counts()};
+                  .host_bytes = store_->bytes(),
+                  .peak_host_bytes = store_->peak_bytes(),
+                  .store = store_->counts()};
 }
 
 }  // namespace shvr

@@ -77,6 +77,7 @@ public:
     VolumeBinding atlas(FrameGraph& graph) override { return import(graph); }
     std::optional<RegionBricks> region(const VoxelBox& voxels, bool wait) override;
     std::optional<Counts> counts() const override { return std::nullopt; }
+    std::shared_ptr<BrickStore> host_bricks() const override { return nullptr; }
 
 private:
     class Builder;

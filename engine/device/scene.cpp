@@ -52,9 +52,14 @@ AtlasCodes codes_of(const gpu::Memory& memory, const VolumeSource& source, const
     return Scene::codes_for(memory.traits(), source.info().type, options.sampling);
 }
 
+uint64_t bytes_for_pictures(uint64_t bytes_left)
+{
+    return std::max(MIN_PICTURE_BYTES, bytes_left / 16 * PICTURE_SIXTEENTHS);
+}
+
 uint64_t bytes_for_pictures(const gpu::Memory& memory)
 {
-    return std::max(MIN_PICTURE_BYTES, memory.device_bytes_left() / 16 * PICTURE_SIXTEENTHS);
+    return bytes_for_pictures(memory.device_bytes_left());
 }
 
 /// Device memory for ambient occlusion, in addition to the part per brick.
@@ -69,13 +74,20 @@ uint64_t light_bytes(uint64_t bricks)
     return bricks * (Occlusion::slot_bytes() / 4 * 5);
 }
 
-bool fits_resident(const gpu::Memory& memory, const VolumeSource& source, const Scene::Options& options,
+/// `left`: the free device memory.
+bool fits_resident(const gpu::Memory& memory, uint64_t left, const VolumeSource& source, const Scene::Options& options,
                    uint64_t reserved_bytes)
 {
     const uint64_t bytes =
         Scene::resident_bytes(source.info(), codes_of(memory, source, options), options.with_occlusion);
-    const uint64_t beside = bytes_for_pictures(memory) + reserved_bytes + scratch_bytes(memory, options);
-    return beside <= memory.device_bytes_left() && bytes <= memory.device_bytes_left() - beside;
+    const uint64_t beside = bytes_for_pictures(left) + reserved_bytes + scratch_bytes(memory, options);
+    return beside <= left && bytes <= left - beside;
+}
+
+bool fits_resident(const gpu::Memory& memory, const VolumeSource& source, const Scene::Options& options,
+                   uint64_t reserved_bytes)
+{
+    return fits_resident(memory, memory.device_bytes_left(), source, options, reserved_bytes);
 }
 
 bool pages(const gpu::Memory& memory, const VolumeSource& source, const Scene::Options& options,
@@ -150,7 +162,7 @@ Scene::Scene(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const
       tables_(memory)
 {
     load(options_.reserved_bytes);
-    options_.in_slices = false;  // if memory runs short, the volume is loaded again, at once
+    options_.in_slices = false;  // make_room() chooses for itself
 }
 
 uint64_t Scene::next_number()
@@ -159,30 +171,35 @@ uint64_t Scene::next_number()
     return ++last;
 }
 
-/// `reserved_bytes`: device memory for paint, offsets and surfaces.
-void Scene::load(uint64_t reserved_bytes)
+/// `reserved_bytes`: device memory for paint, offsets and surfaces. `host_bricks`: those of offsets_; null: none.
+void Scene::load(uint64_t reserved_bytes, const std::shared_ptr<BrickStore>& host_bricks)
 {
     memory_.free_idle();
     const IntensityWindow window = window_for(source_->info().type, statistics_);
     const AtlasCodes codes = codes_of(memory_, *source_, options_);
     const bool is_paged = pages(memory_, *source_, options_, reserved_bytes) || !load_resident(window);
     mask_.emplace(executor_, memory_, is_paged);
-    if (is_paged) load_paged(window, codes, reserved_bytes);
+    if (is_paged) load_paged(window, codes, reserved_bytes, host_bricks);
     if (!has_exact_codes(source_->info().type, statistics_))
         threshold_bricks_ = std::make_unique<ThresholdBricks>(offsets_);
 }
 
-void Scene::load_paged(const IntensityWindow& window, AtlasCodes codes, uint64_t reserved_bytes)
+void Scene::load_paged(const IntensityWindow& window, AtlasCodes codes, uint64_t reserved_bytes,
+                       std::shared_ptr<BrickStore> host_bricks)
 {
+    const bool goes_on = host_bricks != nullptr;
     PagedVolume::Options paged{
         .codes = codes,
         .threads = options_.threads,
         .host_bytes = options_.host_bytes / HOST_SHARES,
         .device_bytes = atlas_bytes(memory_, source_->info(), codes, options_.with_occlusion, reserved_bytes),
-        .in_slices = options_.in_slices};
-    source_ = with_levels(std::move(source_), options_.host_bytes, options_.progress);
-    held_ = std::make_shared<HeldSource>(source_);
-    offsets_ = std::make_shared<OffsetSource>(held_);
+        .in_slices = options_.in_slices || (goes_on && reads_in_background_),
+        .host_bricks = std::move(host_bricks)};
+    if (!goes_on) {
+        source_ = with_levels(std::move(source_), options_.host_bytes, options_.progress);
+        held_ = std::make_shared<HeldSource>(source_);
+        offsets_ = std::make_shared<OffsetSource>(held_);
+    }
     while (!volume_) {
         try {
             volume_ = std::make_unique<PagedVolume>(executor_, memory_, offsets_, window, paged);
@@ -195,6 +212,7 @@ void Scene::load_paged(const IntensityWindow& window, AtlasCodes codes, uint64_t
             memory_.free_idle();
         }
     }
+    if (goes_on) volume_->load_on(0.0);  // what the host has
 }
 
 /// Returns false if memory is too short (drivers overstate it, other programs use some) but bricks can be paged.
@@ -217,21 +235,38 @@ bool Scene::load_resident(const IntensityWindow& window)
     }
 }
 
-/// Keeps `bytes` free on the device, in addition to the pictures' share, by loading the volume with fewer bricks.
-void Scene::make_room(uint64_t bytes)
+/// Whether `bytes` are free on the device, in addition to the pictures' share.
+bool Scene::has_room(uint64_t bytes)
 {
     memory_.free_idle();
     const glm::u64vec3 slots(volume_->atlas_slots());
     const uint64_t light = options_.with_occlusion ? light_bytes(slots.x * slots.y * slots.z) : 0;
-    if (bytes + bytes_for_pictures(memory_) + light + scratch_bytes(memory_, options_) <= memory_.device_bytes_left())
-        return;
+    return bytes + bytes_for_pictures(memory_) + light + scratch_bytes(memory_, options_) <=
+           memory_.device_bytes_left();
+}
+
+/// Whether the volume may be loaded with fewer bricks. One that has no levels and is resident would be read as a whole
+/// to make them.
+bool Scene::can_shrink() const
+{
+    const bool is_paged = volume_->host_bricks() != nullptr;
+    return is_paged || (options_.paging != Paging::never && !(reads_in_background_ && source_->levels() == 1));
+}
+
+/// Keeps `bytes` free on the device, in addition to the pictures' share, by loading the volume with fewer bricks. Where
+/// that is impossible, the volume stays as it is: what is shown next fails if it does not fit.
+void Scene::make_room(uint64_t bytes)
+{
+    if (has_room(bytes) || !can_shrink()) return;
+    const std::shared_ptr<const OffsetSource> read_from = offsets_;  // outlives the bricks that loaders read from it
+    const std::shared_ptr<BrickStore> host_bricks = offsets_->empty() ? volume_->host_bricks() : nullptr;
     occlusion_.clear();
     volume_.reset();
     mask_.reset();
     try {
-        load(bytes);
+        load(bytes, host_bricks);
     } catch (const gpu::MemoryError&) {
-        load(0);  // the volume stays loaded, without the features that do not fit
+        load(0, host_bricks);  // the volume stays loaded, without the features that do not fit
         throw;
     }
 }
@@ -278,14 +313,15 @@ bool Scene::pages_alone(const gpu::Memory& memory, const VolumeSource& source, c
 {
     if (options.paging != Paging::automatic) return options.paging == Paging::always;
     return source.levels() > 1 ||
-           ResidentVolume::bytes_for(source.info(), codes_of(memory, source, options)) > memory.device_budget() ||
+           !fits_resident(memory, memory.device_budget(), source, options, options.reserved_bytes) ||
            !can_be_resident(memory, source, options);
 }
 
 bool Scene::fits_now(gpu::Memory& memory, const VolumeSource& source, const Options& options)
 {
     static_cast<void>(codes_of(memory, source, options));
-    return !pages(memory, source, options) && fits_resident(memory, source, options, 0);
+    return !pages(memory, source, options, options.reserved_bytes) &&
+           fits_resident(memory, source, options, options.reserved_bytes);
 }
 
 void Scene::check_sizes(gpu::Memory& memory, const VolumeSource& source, const Options& options)

@@ -60,7 +60,7 @@ public:
     static AtlasCodes codes_for(const gpu::DeviceTraits& traits, VoxelType type, Sampling sampling);
     /// Whether one image of the device could hold all bricks of the source, regardless of free memory.
     static bool can_be_resident(const gpu::Memory& memory, const VolumeSource& source, const Options& options);
-    /// Whether a scene of this source would be paged even if the device held nothing else.
+    /// Whether a scene of this source would be paged even if the device held nothing else but `reserved_bytes`.
     static bool pages_alone(const gpu::Memory& memory, const VolumeSource& source, const Options& options);
     /// Whether a scene of this source would be resident and fits in addition to everything now on the device. Fails if
     /// the device does not support `options`.
@@ -93,8 +93,9 @@ public:
     void read_in_background(bool on) { reads_in_background_ = on; }
     bool reads_in_background() const { return reads_in_background_; }
     /// Shows all paint and offsets of the document, and reserves memory for its trace. If memory is short, loads the
-    /// volume again with fewer bricks. Must be called before anything else refers to this scene's volume. Fails if the
-    /// budget cannot hold the document's content.
+    /// volume again with fewer bricks, which come from the host where it has them; with read_in_background(), never
+    /// waits for the others, which arrive like all bricks. Must be called before anything else refers to this scene's
+    /// volume. Fails if the budget cannot hold the document's content.
     void show(const Document& document);
     /// Shows `changes`, which the document already contains: paint, offsets and, once show_surfaces() has been called,
     /// the trace. Returns whether paint or offsets are among the changes. Frames submitted later show them. Fails if
@@ -169,9 +170,12 @@ public:
     void note_message(std::string message) { messages_.push_back(std::move(message)); }
 
 private:
-    void load(uint64_t reserved_bytes);
+    void load(uint64_t reserved_bytes, const std::shared_ptr<BrickStore>& host_bricks = nullptr);
     bool load_resident(const IntensityWindow& window);
-    void load_paged(const IntensityWindow& window, AtlasCodes codes, uint64_t reserved_bytes);
+    void load_paged(const IntensityWindow& window, AtlasCodes codes, uint64_t reserved_bytes,
+                    std::shared_ptr<BrickStore> host_bricks);
+    bool has_room(uint64_t bytes);
+    bool can_shrink() const;
     void make_room(uint64_t bytes);
     void drop_occlusion(const std::string& why);
     Occlusion::Look occlusion_look(const Look& look);

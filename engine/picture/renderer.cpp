@@ -75,19 +75,24 @@ std::unique_ptr<Scene> Renderer::begin_loading(std::shared_ptr<const VolumeSourc
     return std::make_unique<Scene>(on_device_->executor, on_device_->memory, std::move(source), statistics, options);
 }
 
-bool Renderer::fits_beside(const VolumeSource& source, const RenderSettings& settings, bool with_occlusion)
+bool Renderer::fits_beside(const VolumeSource& source, const RenderSettings& settings, bool with_occlusion,
+                           const Document& document)
 {
-    return Scene::fits_now(on_device_->memory, source, scene_options(settings, with_occlusion));
+    Scene::Options options = scene_options(settings, with_occlusion);
+    options.reserved_bytes = Scene::bytes_to_show(document);
+    return Scene::fits_now(on_device_->memory, source, options);
 }
 
 std::shared_ptr<const VolumeSource> Renderer::with_levels(std::shared_ptr<const VolumeSource> source,
                                                           const RenderSettings& settings, bool with_occlusion,
-                                                          const Progress& progress) const
+                                                          uint64_t reserved_bytes, const Progress& progress) const
 {
     {
+        Scene::Options options = scene_options(settings, with_occlusion);
+        options.reserved_bytes = reserved_bytes;
         const std::lock_guard lock(device_mutex_);
         if (!on_device_) throw DeviceLost("the graphics device was lost and could not be started again");
-        if (!Scene::pages_alone(on_device_->memory, *source, scene_options(settings, with_occlusion))) return source;
+        if (!Scene::pages_alone(on_device_->memory, *source, options)) return source;
     }
     return shvr::with_levels(std::move(source), host_budget_, progress);
 }

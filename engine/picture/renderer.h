@@ -74,11 +74,13 @@ public:
     /// `document`: the annotation to show. Coarser levels (with_levels) are made here if the source lacks them.
     std::unique_ptr<Scene> begin_loading(std::shared_ptr<const VolumeSource> source, const VolumeStatistics& statistics,
                                          const RenderSettings& settings, bool with_occlusion, const Document& document);
-    bool fits_beside(const VolumeSource& source, const RenderSettings& settings, bool with_occlusion);
+    bool fits_beside(const VolumeSource& source, const RenderSettings& settings, bool with_occlusion,
+                     const Document& document);
     /// Returns the source. If it would be paged and lacks coarser levels, makes levels by reading it once. Any thread.
+    /// `reserved_bytes`: device memory for the annotation (Scene::bytes_to_show).
     std::shared_ptr<const VolumeSource> with_levels(std::shared_ptr<const VolumeSource> source,
                                                     const RenderSettings& settings, bool with_occlusion,
-                                                    const Progress& progress = {}) const;
+                                                    uint64_t reserved_bytes = 0, const Progress& progress = {}) const;
     /// Returns the memory needed to load the source while nothing else is loaded. Reads no voxels. Any thread.
     SceneEstimate estimate(const VolumeSource& source, const RenderSettings& settings, bool with_occlusion) const;
     /// Removes the scene and returns it; null if there was none.

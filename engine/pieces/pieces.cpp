@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <random>
 #include <span>
 
@@ -12,6 +13,7 @@
 
 #include "engine/base/atomic_file.h"
 #include "engine/base/atomic_writer.h"
+#include "engine/base/file.h"
 #include "engine/base/json.h"
 #include "engine/base/text.h"
 
@@ -23,6 +25,8 @@ namespace fs = std::filesystem;
 
 constexpr int64_t MAX_MANIFEST_BYTES = int64_t{64} << 20;
 constexpr const char* SUFFIX = ".pieces";
+constexpr std::string_view OWN_MANIFEST = ".manifest-";
+constexpr std::chrono::hours OLD{24};
 /// Headers whose voxels may be in another file, and how the names of such files go on after the header's stem.
 constexpr std::string_view HEADERS[] = {".nhdr", ".mhd", ".hdr"};
 constexpr std::string_view VOXEL_FILES[] = {".raw", ".img", ".zraw", ".bin", ".dat"};
@@ -38,11 +42,34 @@ std::string text_of(const PieceManifest& manifest)
     return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-std::vector<std::string> texts_of(const JsonNode& list)
+std::vector<std::string> texts_of(const JsonNode& list, size_t least)
 {
     std::vector<std::string> texts;
-    for (const JsonNode& element : list.elements()) texts.push_back(element.any_text());
+    for (const JsonNode& element : list.elements(least)) texts.push_back(element.any_text());
     return texts;
+}
+
+PieceManifest manifest_in(const JsonNode& root)
+{
+    root.required("shvr_pieces", "1, as shvr writes it").whole(1, 1);
+    const JsonNode folder = root.required("folder", "the folder in which the tasks ran");
+    PieceManifest manifest{.version = root.required("version", "the version of shvr").text(),
+                           .command = texts_of(root.required("command", "the arguments of the tasks"), 1),
+                           .folder = folder.text(),
+                           .tasks = root.required("tasks", "the number of tasks").whole(1, MAX_TASKS),
+                           .inputs = texts_of(root.required("inputs", "the files that tasks read"), 0)};
+    if (!manifest.folder.is_absolute()) folder.refuse("the path of a folder from the root, as in /data/scans");
+    return manifest;
+}
+
+/// Removes manifests of killed tasks that have been published, or can no longer be.
+void collect_own_manifest(const fs::directory_entry& entry)
+{
+    std::error_code error;
+    if (!entry.path().filename().string().starts_with(OWN_MANIFEST)) return;
+    const bool is_published = entry.hard_link_count(error) > 1 && !error;
+    const fs::file_time_type written = entry.last_write_time(error);
+    if (is_published || (!error && fs::file_time_type::clock::now() - written > OLD)) fs::remove(entry.path(), error);
 }
 
 std::string joined(const std::vector<std::string>& words)
@@ -124,8 +151,9 @@ void Pieces::begin(const PieceManifest& manifest) const
     std::error_code error;
     fs::create_directories(folder_, error);
     if (error) fail(folder_.string(), ": cannot be created: ", error.message());
+    collect_temporary();
     if (!fs::exists(manifest_path(), error)) {
-        const fs::path own = folder_ / sentence(".manifest-", std::random_device{}(), "-", ::getpid());
+        const fs::path own = folder_ / sentence(OWN_MANIFEST, std::random_device{}(), "-", ::getpid());
         const std::string text = text_of(manifest);
         write_file_atomically(own, std::as_bytes(std::span(text)));
         publish(own, manifest_path());
@@ -166,14 +194,26 @@ PieceManifest Pieces::manifest() const
         fail(manifest_path().string(),
              ": is missing; expected the manifest that the first task of a job writes: run "
              "its command with --task 0/N");
-    const JsonDocument document = read_json(manifest_path(), MAX_MANIFEST_BYTES);
-    const JsonNode root = document.root();
-    root.required("shvr_pieces", "1, as shvr writes it").whole(1, 1);
-    return {.version = root.required("version", "the version of shvr").any_text(),
-            .command = texts_of(root.required("command", "a list of arguments")),
-            .folder = root.required("folder", "a folder").any_text(),
-            .tasks = root.required("tasks", "the number of tasks").whole(1, MAX_TASKS),
-            .inputs = texts_of(root.required("inputs", "a list of files"))};
+    const std::string text = read_text(manifest_path(), MAX_MANIFEST_BYTES);
+    try {
+        return manifest_in(
+            JsonDocument(text, manifest_path().string(), {.expected = "what the first task wrote"}).root());
+    } catch (const Error& error) {
+        fail(error.what(), ": remove this file, and run any task of the job again, which writes it again");
+    }
+}
+
+void Pieces::collect_temporary() const
+{
+    collect_temporary_files(folder_);
+    std::error_code error;
+    for (fs::directory_iterator entry(folder_, error); !error && entry != fs::directory_iterator();
+         entry.increment(error)) {
+        collect_own_manifest(*entry);
+        if (entry->path().extension() != ".part") continue;
+        collect_temporary_files(entry->path());
+        collect_temporary_files(entry->path() / "shvr");
+    }
 }
 
 std::vector<std::string> Pieces::missing(int64_t of) const

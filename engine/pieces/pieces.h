@@ -47,10 +47,13 @@ public:
     std::filesystem::path piece(int64_t task) const;
     bool has(int64_t task) const;
 
-    /// Begins a task: writes the manifest, or fails with a sentence if the one that is there differs from it.
+    /// Begins a task: writes the manifest, or fails with a sentence if the one that is there differs from it. Removes
+    /// what killed tasks left.
     void begin(const PieceManifest& manifest) const;
-    /// Fails with a sentence if there is none, or if it is no manifest.
+    /// Fails with a sentence if there is none, or if it is no manifest or a damaged one.
     PieceManifest manifest() const;
+    /// Removes the temporary files of killed tasks (collect_temporary_files), also in unfinished pieces. Never fails.
+    void collect_temporary() const;
     /// Returns the tasks of `of` that have left no piece, as in "2/8".
     std::vector<std::string> missing(int64_t of) const;
     /// Throws MissingPieces if there are any.

@@ -155,9 +155,9 @@ void PartFolder::clear() const
 void PartFolder::clear_temporary() const
 {
     std::error_code error;
-    for (const fs::directory_entry& entry : fs::directory_iterator(part_ / "shvr", error)) {
-        if (entry.path().filename().string().starts_with(".shvr-")) fs::remove(entry.path(), error);
-    }
+    for (const fs::path& folder : {part_, part_ / "shvr"})
+        for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+            if (is_temporary(entry.path()) && entry.path().filename() != FOLDER_LOCK) fs::remove(entry.path(), error);
 }
 
 void PartFolder::sync() const

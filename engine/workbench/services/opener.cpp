@@ -155,13 +155,15 @@ void Opener::read_next()
         }
         const bool is_far = leads_to_network(opened.session.volume_path);  // label images there are asked for no voxels
         std::string labels = goes_on && !is_far ? why_labels(input, *opened.source, opened.statistics) : std::string();
-        const Session& session = opened.session;
-        opened.source = renderer.with_levels(std::move(opened.source), session.render, shows_occlusion(session.light),
-                                             reporter.begin("making coarser levels of " + name));
         Work::Opening with_progress = how;
         with_progress.progress = reporter.begin("reading the work on " + name);
-        return {Document::read(std::move(opened), input, settings, std::move(with_progress), may_write_outside),
-                std::move(pictured), std::move(labels)};
+        Document::Read document =
+            Document::read(std::move(opened), input, settings, std::move(with_progress), may_write_outside);
+        const Session& session = document.opened.session;
+        document.opened.source = renderer.with_levels(
+            std::move(document.opened.source), session.render, shows_occlusion(session.light),
+            Scene::bytes_to_show(document.work->document()), reporter.begin("making coarser levels of " + name));
+        return {std::move(document), std::move(pictured), std::move(labels)};
     };
     opening.number =
         jobs_.start("opening " + short_name(path),
@@ -239,7 +241,7 @@ void Opener::begin_loading()
     const Session& session = read.opened.session;
     const bool has_light = shows_occlusion(session.light);
     others_.drop_screenshot("opening another scan");
-    if (!renderer_.fits_beside(*read.opened.source, session.render, has_light)) {
+    if (!renderer_.fits_beside(*read.opened.source, session.render, has_light, read.work->document())) {
         if (document_) {
             document_->screen.clear();
             put_away();

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/base/text.h"
+#include "engine/remote/address.h"
 #include "engine/workbench/services/opening.h"
 
 namespace shvr::ui {
@@ -149,7 +150,7 @@ void Opener::restart_device(const std::function<void()>& make_anew)
     if (document_) others_.forget_reload();  // load_again() applies the current settings anyway
     make_anew();
     others_.look_again();
-    if (document_) load_again();
+    if (document_) load_again();  // or puts it away
     if (away_ && (!opening_ || opening_->comes_back)) bring_back();
     say(sentence("The graphics device stopped responding and was restarted; ",
                  was_painting && !document_ ? "the stroke being painted may be incomplete, all other work is intact"
@@ -157,9 +158,15 @@ void Opener::restart_device(const std::function<void()>& make_anew)
         Weight::warning);
 }
 
-/// Loads the document onto the new device. If the device cannot hold it, unloads it, to be shown again later.
+/// Loads the document onto the new device. If the device cannot hold it, or if the volume is on another machine, for
+/// which the window must not wait, unloads it, to be shown again later.
 void Opener::load_again()
 {
+    if (leads_to_network(document_->session.volume_path)) {
+        cancel();  // another opening would end with this document still unloaded
+        document_->annotator.drop_strokes();
+        return put_away();
+    }
     try {
         document_->load_again(renderer_);
     } catch (const DeviceLost&) {

@@ -13,6 +13,7 @@ constexpr Jobs::Number NUMBER_OF_RELOAD = Jobs::Number{1} << 49;  // no job has 
 struct Reloader::Reload {
     RenderSettings before;           ///< settings with which the displayed scene was loaded
     std::unique_ptr<Scene> scene{};  ///< null: it has not begun
+    bool is_shown = false;           ///< the earlier scene is gone
 };
 
 Reloader::Reloader(Desk& desk, Others others) : Service(desk), others_(std::move(others)) {}
@@ -32,15 +33,29 @@ void Reloader::begin()
 {
     const Session& session = document_->session;
     const bool has_light = shows_occlusion(session.light);
+    const shvr::Document& work = document_->annotator.document();
     others_.drop_screenshot("reloading the volume");
-    if (!renderer_.fits_beside(*document_->source, session.render, has_light)) {
-        reload_.reset();
-        drop_queries();
-        document_->screen.clear();
-        return others_.load_alone();
-    }
-    reload_->scene = renderer_.begin_loading(document_->source, document_->statistics, session.render, has_light,
-                                             document_->annotator.document());
+    if (!renderer_.fits_beside(*document_->source, session.render, has_light, work)) return load_alone();
+    reload_->scene = renderer_.begin_loading(document_->source, document_->statistics, session.render, has_light, work);
+}
+
+void Reloader::load_alone()
+{
+    reload_.reset();
+    drop_queries();
+    document_->screen.clear();
+    others_.load_alone();
+}
+
+/// Replaces the scene. Fails if paint that was added meanwhile does not fit beside it.
+void Reloader::show()
+{
+    drop_queries();
+    document_->screen.clear();
+    renderer_.show(std::move(reload_->scene)).reset();  // the work needs its room
+    reload_->is_shown = true;
+    document_->show_again(renderer_);
+    say("Reloaded: " + document_->shown_name());
 }
 
 void Reloader::advance()
@@ -53,11 +68,7 @@ void Reloader::advance()
             if (!reload_) return;
         }
         if (!reload_->scene->load_on(Opener::SLICE_S) || document_->annotator.stroke_is_running()) return;
-        drop_queries();
-        document_->screen.clear();
-        const std::unique_ptr<Scene> before = renderer_.show(std::move(reload_->scene));
-        document_->show_again(renderer_);
-        say("Reloaded: " + document_->shown_name());
+        show();
     } catch (const DeviceLost&) {
         throw;
     } catch (const Error& error) {
@@ -66,6 +77,7 @@ void Reloader::advance()
         session.render.paging = reload_->before.paging;
         others_.note_edit();
         say(sentence(error.what(), "; the volume stays as it was loaded"), Weight::error);
+        if (reload_->is_shown) load_alone();
     }
     reload_.reset();
     others_.look_again();

@@ -1,7 +1,7 @@
 #pragma once
 // Reloads the volume after changes of render.sampling or render.paging. The new scene is loaded in slices, while the
-// old scene stays on display. If the device has no room for both scenes, the document is unloaded until the new scene
-// is loaded, as when another document is opened.
+// old scene stays on display. If the device has no room for both scenes and the document, the document is unloaded
+// until the new scene is loaded, as when another document is opened.
 
 #include "engine/workbench/desk/service.h"
 
@@ -38,6 +38,8 @@ public:
 private:
     struct Reload;
     void begin();
+    void load_alone();
+    void show();
     void drop_queries();
 
     const Others others_;

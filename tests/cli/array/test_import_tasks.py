@@ -16,6 +16,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "remote"))
 from store_server import StoreServer  # noqa: E402
 
 
+STOP_IN_SAVE = Path(SHVR).resolve().parent / "stubs" / "libstop_in_save.so"
+
+
 class ImportTasks(SplitTest):
     OTHER = ["--blur", "2.5"]
 
@@ -93,6 +96,46 @@ class ImportTasks(SplitTest):
         output.rename(whole)
         self.check(*arguments)
         self.assert_equal_files(output, whole)
+
+    def temporary_files(self):
+        return sorted(file for file in self.folder.rglob(".shvr-*.tmp"))
+
+    def kill_in_save(self, *arguments):
+        """Kills a task while the state of its piece has its temporary name."""
+        process = subprocess.Popen([SHVR, *map(str, arguments), "--quiet"], stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.DEVNULL,
+                                   env={**ENVIRONMENT, "LD_PRELOAD": str(STOP_IN_SAVE), "SHVR_STOP_AT_CREATE": "/.shvr-",
+                                        "SHVR_STOP_SIGNAL": str(int(signal.SIGKILL))})
+        self.assertEqual(process.wait(), -signal.SIGKILL)
+
+    @unittest.skipUnless(STOP_IN_SAVE.exists(), "not built: stubs/libstop_in_save.so")
+    def test_what_a_killed_task_left_is_removed_by_gather_and_by_the_next_task(self):
+        arguments = self.import_of(self.write_volume((20, 17, 130)), "project")
+        self.tasks(2, *arguments, order=(0,))
+        for remover in ("gather", "task 0", "task 1"):
+            with self.subTest(remover=remover):
+                self.kill_in_save(*arguments, "--task", "1/2")
+                self.assertEqual(len(self.temporary_files()), 1)
+                if remover == "gather":
+                    self.gather(self.folder / "project", status=1)
+                else:
+                    self.tasks(2, *arguments, order=(int(remover[-1]),))
+                self.assertEqual(self.temporary_files(), [])
+        self.gather(self.folder / "project")
+
+    def test_a_damaged_manifest_is_refused_by_tasks_and_by_gather_and_written_again(self):
+        arguments = self.import_of(self.write_volume((20, 17, 130)), "project")
+        self.tasks(2, *arguments, order=(0,))
+        manifest = self.folder / "project.pieces" / "manifest.json"
+        whole = manifest.read_text()
+        for text, says in ((whole[:60], "is not JSON"), (whole.replace('"tasks": 2', '"tasks": -2'), "key tasks is -2; expected")):
+            manifest.write_text(text)
+            for command in (("gather", self.folder / "project.pieces"), (*arguments, "--task", "1/2")):
+                self.check_refused(*command, status=1, says=[str(manifest), says, "remove this file, and run any task"])
+        manifest.unlink()
+        self.tasks(2, *arguments, order=(1,))
+        self.assertEqual(manifest.read_text(), whole)
+        self.gather(self.folder / "project")
 
     def test_a_project_that_is_in_the_way_is_refused_before_the_work_and_after_it(self):
         arguments = self.import_of(self.write_volume((20, 17, 130)), "project")

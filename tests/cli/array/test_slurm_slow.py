@@ -242,7 +242,7 @@ class Slurm(SplitTest):
 
     def test_the_worked_example_of_the_page_does_every_scan(self):
         page = (SCRIPTS / "README.md").read_text().partition("## A hundred scans")[2]
-        by_slurm, by_xargs = re.findall(r"```sh\n(.*?)```", page, re.S)[:2]
+        by_slurm, by_xargs, large = re.findall(r"```sh\n(.*?)```", page, re.S)
         for old, new in [("1-100%20", "1-3%20"), ("--cpus-per-task=4", "--cpus-per-task=1"),
                          ("--mem=8G", "--mem=100M")]:
             self.assertIn(old, by_slurm)
@@ -268,6 +268,33 @@ class Slurm(SplitTest):
             if name.endswith(".png"):
                 self.assertEqual((self.folder / "results" / name).read_bytes(), results[name], name)
         self.assert_equal_files(self.folder / "projects", self.folder / "projects-by-slurm")
+        before = {name: (self.folder / "results" / name).stat().st_mtime_ns for name in results}
+        self.ask("bash", "-euo", "pipefail", "-c", by_xargs)  # all is done
+        self.assertEqual({name: (self.folder / "results" / name).stat().st_mtime_ns for name in results}, before)
+
+        (self.folder / "tools").symlink_to(SCRIPTS.parent)
+        write_tiff(self.folder / "scans" / "large.tif", (1.0, 1.0, 1.0))
+        self.assertEqual(large.count("submit 16"), 2)
+        large = large.replace("submit 16", "submit 2").replace('="--dep', f'="{self.environment["SBATCH_OPTIONS"]} --dep')
+        job = self.ask("bash", "-euo", "pipefail", "-c", large).strip()
+        self.assertEqual(self.wait_for_end(job), {job: "COMPLETED"}, self.told())
+        self.assertTrue((self.folder / "projects" / "large").is_dir())
+        (self.folder / "large.zarr").rename(self.folder / "joined.zarr")
+        self.ask("shvr", "label", "projects/large", "--threshold", "120", "-o", "large.zarr")
+        self.assert_equal_files(self.folder / "large.zarr", self.folder / "joined.zarr")
+
+    def test_some_tasks_of_an_array_run_again_where_their_indices_give_the_same_number(self):
+        volume = Volume.noise((20, 20, 40), seed=3).write(self.folder)
+        command = ("label", volume, "--threshold", 128, "-o", self.folder / "labels.nrrd")
+        self.ask(Path(SHVR).resolve(), *command, "--task", "1/8")
+        pieces = self.folder / "labels.nrrd.pieces"
+        for indices, ends in (("0,7", {"COMPLETED"}), ("3,7", {"FAILED"})):
+            job = self.ask("sbatch", "--parsable", "--cpus-per-task=1", "--mem=100M", f"--array={indices}",
+                           SCRIPTS / "task.sbatch", *command).strip()
+            self.assertEqual(set(self.wait_for_end(job).values()), ends, self.told())
+        self.assertEqual([index for index in range(8) if (pieces / f"piece-{index}").exists()], [0, 1, 7])
+        log = (self.folder / f"shvr-{job}-3.log").read_text()
+        self.assertIn("the job is split into 8 tasks, and this is one of", log)
 
     def test_a_job_has_as_many_threads_as_processors(self):
         report = self.folder / "doctor.json"

@@ -11,7 +11,7 @@ PAGED = ["--set", "render.paging=always", "--budget-device", "32", "--budget-hos
 
 
 class Mpirun(RanksTest):
-    COUNTS = (1, 2, 3, 4, 5)
+    COUNTS = (1, 2, 3, 4, 5, 8)
 
     def setUp(self):
         super().setUp()

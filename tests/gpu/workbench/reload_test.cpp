@@ -111,6 +111,32 @@ TEST_CASE("where the device has no room for both, the document comes back with i
     CHECK_FALSE(desk.bench.shows_jobs());
 }
 
+TEST_CASE("paint that has no room beside two scenes is shown once the earlier one is gone, without a third")
+{
+    PagedDesk desk;
+    desk.bench.perform(Set{RESIDENT});
+    desk.bench.advance();
+    REQUIRE(desk.job("loading scan.json once more"));
+    gpu::Memory& memory = desk.renderer.memory();
+    memory.free_idle();
+    constexpr uint64_t LEFT = uint64_t{256} << 10;  // for fewer bricks than the stroke paints
+    REQUIRE(memory.device_bytes_left() > LEFT);
+    const gpu::Storage other = memory.create("another", buffer_desc(memory.device_bytes_left() - LEFT));
+    desk.stroke(3);
+    const uint64_t before = desk.renderer.scene().number();
+    for (int turn = 0; turn < 60'000 && desk.bench.has_work(); ++turn) {
+        desk.bench.advance();
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        CHECK(desk.bench.is_open());
+    }
+    CHECK(desk.renderer.scene().number() == before + 1);
+    CHECK_FALSE(desk.is_paged());
+    CHECK(desk.bench.model().session.render.paging == Paging::never);
+    CHECK(desk.bench.model().voxels_by_group[3] > 0);
+    CHECK_FALSE(desk.renderer.scene().is_behind());
+    CHECK(desk.bench.model().view_is_complete);
+}
+
 TEST_CASE("a large screenshot is among the jobs, and is cancelled as one")
 {
     PagedDesk desk;

@@ -46,8 +46,6 @@ fs::path output_of(const Pieces& pieces)
 /// `printed`: what the command prints, also if it then fails.
 void gather(const Pieces& pieces, const PieceManifest& manifest, const Common& common, Json& printed)
 {
-    if (manifest.command.empty())
-        fail(pieces.manifest_path().string(), ": key command is empty; expected the arguments of a command");
     std::vector<std::string> arguments = manifest.command;
     arguments.insert(arguments.end(), {"--task", "gather", "--json"});
     if (common.quiet) arguments.emplace_back("--quiet");
@@ -64,6 +62,7 @@ void run_gather(const GatherCommandOptions& options)
     std::optional<std::string> gate;
     for (const std::string& path : options.manifests) {
         const Pieces pieces = Pieces::of_manifest(path);
+        pieces.collect_temporary();
         const PieceManifest manifest = pieces.manifest();
         count += manifest.tasks;
         Json job{{"pieces", manifest.tasks}, {"missing", Json::array()}, {"path", output_of(pieces).string()}};

@@ -39,7 +39,7 @@ struct OpenerAlone : DeskWithScan {
     OpenerAlone() { write_session(other); }
     void end_jobs()
     {
-        for (const Jobs::Finished& job : desk.jobs.finish()) CHECK(opener.end_reading(job));
+        for (const Jobs::Finished& job : desk.jobs.finish()) CHECK((job.was_cancelled || opener.end_reading(job)));
     }
     void step()
     {
@@ -115,4 +115,20 @@ TEST_CASE_FIXTURE(OpenerAlone, "opener: the document is put away and comes back 
     REQUIRE(desk.document);
     CHECK(document().annotator.history().undoable() == steps);
     CHECK(says("is open again"));
+}
+
+TEST_CASE_FIXTURE(OpenerAlone, "opener: a lost device is no reason to wait for a volume on another machine")
+{
+    document().annotator.paint(document().dab());
+    const size_t steps = document().annotator.history().undoable();
+    document().session.volume_path = "http://127.0.0.1:1/x.zarr";
+    opener.begin_open(other, {});
+    opener.restart_device([this] { renderer().restart(); });
+    CHECK(desk.document == nullptr);
+    CHECK(opener.is_opening());
+    CHECK(opener.opening_name() == "scan.json");  // and not the other one, which would leave this one unsaved
+    await_end();
+    REQUIRE(desk.document);
+    CHECK(document().annotator.history().undoable() == steps);
+    CHECK(document().session_path == session_path);
 }
