@@ -8,9 +8,9 @@ namespace shvr {
 
 namespace {
 
-/// Default colours, found by the search in tests/unit/look/group_palette_test.cpp; the most distinct come first.
-constexpr const char* GROUP_COLORS[] = {"#fe3099", "#1817ff", "#cbf200", "#09979d", "#ce97ff",
-                                        "#1b5b3d", "#95088c", "#686505", "#02cac2", "#9d61f7"};
+/// Default colours, none of them garish, found by the search in tests/unit/look/group_palette_test.cpp.
+constexpr const char* GROUP_COLORS[] = {"#f36497", "#11a699", "#535bbf", "#648513", "#aca1ff",
+                                        "#724e03", "#6fe2f2", "#185d41", "#614575", "#7380c7"};
 
 /// Returns the decoded colours, which are cached, since every picture needs the looks of all groups.
 const std::array<glm::dvec3, std::size(GROUP_COLORS)>& group_colors()

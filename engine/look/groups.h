@@ -36,7 +36,7 @@ struct ColorGroup {
 
 /// The minimum CIEDE2000 difference between any two of the ten colours, and between them and the default transfer
 /// function or white; in normal vision and simulated protanopia, deuteranopia and tritanopia (Machado 2009).
-inline constexpr double MIN_GROUP_DIFFERENCE = 13.0;
+inline constexpr double MIN_GROUP_DIFFERENCE = 12.3;
 /// Returns the default look, in one of ten distinguishable colours, which repeat. Group 0 (unpainted) is transparent.
 ColorGroup default_group(uint8_t group);
 ColorGroup group_of(const Groups& groups, uint8_t group);

@@ -129,11 +129,12 @@ TEST_CASE("The colours of the first ten groups can be told apart, and from the d
         before.push_back(seen_of(linear_of(color)));
     MESSAGE("before: ", least_difference(before), ", now: ", least_difference(colors));
     CHECK(least_difference(before) < 0.5 * least_difference(colors));
+    for (const Seen& color : colors) CHECK(std::hypot(color[0].y, color[0].z) <= 60.0);  // calm: chroma in normal sight
 }
 
 TEST_CASE("The search for the colours of groups" * doctest::skip())
 {
-    constexpr double MIN_LIGHTNESS = 34.0, MAX_LIGHTNESS = 90.0, MIN_CHROMA = 30.0;
+    constexpr double MIN_LIGHTNESS = 34.0, MAX_LIGHTNESS = 90.0, MIN_CHROMA = 30.0, MAX_CHROMA = 60.0;
     constexpr int STARTS = 40, TRIALS = 6000;
     const std::vector<Seen> fixed = surroundings();
     const auto coded = [](uint32_t code) {
@@ -146,7 +147,8 @@ TEST_CASE("The search for the colours of groups" * doctest::skip())
         std::mt19937 random(start);
         const auto is_allowed = [&](const Seen& seen) {
             const glm::dvec3& lab = seen[0];
-            return lab.x >= MIN_LIGHTNESS && lab.x <= MAX_LIGHTNESS && std::hypot(lab.y, lab.z) >= MIN_CHROMA;
+            const double chroma = std::hypot(lab.y, lab.z);
+            return lab.x >= MIN_LIGHTNESS && lab.x <= MAX_LIGHTNESS && chroma >= MIN_CHROMA && chroma <= MAX_CHROMA;
         };
         std::vector<uint32_t> codes;
         std::vector<Seen> colors;
