@@ -57,9 +57,9 @@ public:
     /// The bits of a row, and those of its neighbours in the same slice and in the slice before.
     struct Row {
         int64_t y = 0;
-        std::span<const uint32_t> ends{};  ///< of each run, its first voxel and the voxel after its last
+        std::span<const uint32_t> ends{};  ///< each run's first voxel and the voxel after its last
         const BitLayout::Strip* strip = nullptr;
-        const uint64_t* words = nullptr;   ///< of all columns, one after another; the strip's other rows lie around it
+        const uint64_t* words = nullptr;   ///< all columns, one after another; the strip's other rows lie around it
         const uint64_t* before = nullptr;  ///< the same of the slice before; null if its bits are not known
         std::ptrdiff_t pitch = 0;          ///< words from one row of the strip to the next
 
