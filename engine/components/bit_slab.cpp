@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "engine/volume/grid.h"
 #include "shaders/bricks.h"
@@ -68,9 +69,14 @@ int64_t BitSlab::thickness_of(const BitLayout::Layer& layer) const
 
 bool BitSlab::read(int64_t z, int64_t end)
 {
-    layer_ = layout_.layer_from(z);
+    const BitLayout::Layer* const layer = std::exchange(layer_, layout_.layer_from(z));
     if (layer_ == nullptr || std::max(z, layer_->lower) >= end) return false;
-    lower_ = std::max(z, layer_->lower);
+    const int64_t lower = std::exchange(lower_, std::max(z, layer_->lower));
+    if (layer == layer_ && upper_ == lower_)
+        before_.assign(words_.begin() + (upper_ - 1 - lower) * layer_->words,
+                       words_.begin() + (upper_ - lower) * layer_->words);
+    else
+        before_.clear();
     upper_ = std::min({end, layer_->upper, lower_ + thickness_of(*layer_)});
     words_.assign(size_t(words()), 0);
     int64_t word = 0;
@@ -87,9 +93,7 @@ void BitSlab::read_strip(const BitLayout::Strip& strip, int64_t first_word)
 {
     const auto voxel_bytes = int64_t(bytes_of(bits_.type()));
     const int64_t slices = upper_ - lower_;
-    int64_t words_of_rows = 0;
-    for (const BitLayout::Columns& columns : strip.columns)
-        words_of_rows += words_of_row(columns.upper - columns.lower);
+    const int64_t words_of_rows = words_of_strip(strip);
     int64_t word_of_columns = first_word;
     for (const BitLayout::Columns& columns : strip.columns) {
         const int64_t width = columns.upper - columns.lower;

@@ -23,7 +23,7 @@ namespace {
 constexpr int64_t RANGES_PER_THREAD = 4, THINNEST_RANGE = 16;
 /// Maximum size of a slice stored as bits: 2^33 voxels.
 constexpr int64_t MAX_SLICE_BYTES = int64_t{1} << 30;
-constexpr uint64_t MAGIC = 0x3174726170766873;  // "shvpart1", byte by byte
+constexpr uint64_t MAGIC = 0x3274726170766873;  // "shvpart2", byte by byte
 
 /// Values and lists of plain values, each list preceded by its length.
 class Description {
@@ -84,26 +84,28 @@ private:
 void put_slice(Description& to, const SliceRuns& slice)
 {
     to.put_all(std::span(slice.rows));
-    to.put_all(std::span(slice.runs));
+    to.put_all(std::span(slice.steps));
+    to.put_all(std::span(slice.labels));
 }
 
 /// Returns whether rows and runs of a slice fit together, with labels below `labels`.
 bool is_sound(const SliceRuns& slice, uint64_t labels)
 {
-    uint32_t end = 0;
+    SliceRuns::Row before;
     for (const SliceRuns::Row& row : slice.rows) {
-        if (row.end < end) return false;
-        end = row.end;
+        if (row.end < before.end || row.steps_end < before.steps_end) return false;
+        before = row;
     }
-    return end == slice.runs.size() &&
-           std::ranges::all_of(slice.runs, [&](const LabelledRun& run) { return run.label < labels; });
+    return before.end == slice.labels.size() && before.steps_end == slice.steps.size() &&
+           std::ranges::all_of(slice.labels, [&](uint32_t label) { return label < labels; });
 }
 
 SliceRuns take_slice(DescriptionReader& from)
 {
     SliceRuns slice;
     slice.rows = from.take_all<SliceRuns::Row>();
-    slice.runs = from.take_all<LabelledRun>();
+    slice.steps = from.take_all<uint8_t>();
+    slice.labels = from.take_all<uint32_t>();
     return slice;
 }
 
@@ -132,10 +134,11 @@ std::vector<RunFile::Place> append_runs(const RunFile& runs, const SliceRange& s
     SliceRuns slice;
     for (int64_t z = slices.lower; z < slices.upper; ++z) {
         runs.read(z, 0, std::numeric_limits<int64_t>::max(), slice);
-        if (slice.runs.empty()) continue;
+        if (slice.rows.empty()) continue;
         places[size_t(z - slices.lower)] = {at, uint32_t(slice.rows.size())};
         for (const std::span<const std::byte> bytes :
-             {std::as_bytes(std::span(slice.rows)), std::as_bytes(std::span(slice.runs))}) {
+             {std::as_bytes(std::span(slice.rows)), std::as_bytes(std::span(slice.steps)),
+              std::as_bytes(std::span(slice.labels))}) {
             file.append(bytes);
             at += int64_t(bytes.size());
         }
@@ -286,9 +289,9 @@ std::deque<LabelledRange> ComponentPart::read_ranges() const
         if (voxels.size() != parents.size()) refuse();
         for (size_t i = 0; i < parents.size(); ++i) {
             const uint32_t label = range.forest.add();
-            if (parents[i] > label) refuse();
+            if (parents[i] > label || voxels[i] < 0) refuse();
             range.forest.parent(label) = parents[i];
-            range.forest.voxels(label) = voxels[i];
+            range.forest.add_voxels(label, voxels[i]);
         }
         range.first = take_slice(reader);
         range.last = take_slice(reader);

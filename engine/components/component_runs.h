@@ -21,30 +21,42 @@ struct LabelledRun {
 struct SliceRuns {
     struct Row {
         uint32_t y = 0;
-        uint32_t end = 0;  ///< one past the row's last index in `runs`; its first is the previous row's `end`
+        uint32_t end = 0;        ///< one past the row's last index in `labels`; its first is the previous row's `end`
+        uint64_t steps_end = 0;  ///< the same of `steps`
     };
     std::vector<Row> rows{};  ///< ascending
-    std::vector<LabelledRun> runs{};
+    /// Distances from one end of a run to the next, from 0 on: a byte, or LONG_STEP and the distance in four bytes.
+    std::vector<uint8_t> steps{};
+    std::vector<uint32_t> labels{};
+    static constexpr uint8_t LONG_STEP = 255;
 
     void clear()
     {
         rows.clear();
-        runs.clear();
+        steps.clear();
+        labels.clear();
     }
-    /// The runs of rows[i].
-    std::span<LabelledRun> runs_of(size_t i)
+    /// Appends a row. `ends` has the first voxel of each run and the voxel after its last, ascending; all runs get the
+    /// same label.
+    void add_row(uint32_t y, std::span<const uint32_t> ends, uint32_t label);
+    /// Replaces `runs` by the runs of rows[i]. Runs end early, or are missing, where the steps are damaged.
+    void get_row(size_t i, std::vector<LabelledRun>& runs) const;
+    size_t first_of(size_t i) const { return i == 0 ? 0 : rows[i - 1].end; }
+    std::span<uint32_t> labels_of(size_t i)
     {
-        const size_t begin = i == 0 ? 0 : rows[i - 1].end;
-        return std::span(runs).subspan(begin, rows[i].end - begin);
+        return std::span(labels).subspan(first_of(i), rows[i].end - first_of(i));
     }
-    int64_t bytes() const { return int64_t(rows.capacity() * sizeof(Row) + runs.capacity() * sizeof(LabelledRun)); }
+    int64_t bytes() const
+    {
+        return int64_t(rows.capacity() * sizeof(Row) + steps.capacity() + labels.capacity() * sizeof(uint32_t));
+    }
 };
 
 /// An unnamed temporary file, which leaves nothing behind even after a crash. Any thread may write and read different
 /// slices at once; each slice is written once, before it is read.
 class RunFile {
 public:
-    /// Where the rows of a slice are in the file; its runs follow them.
+    /// Where the rows of a slice are in the file; their steps and labels follow them.
     struct Place {
         int64_t offset = 0;
         uint32_t rows = 0;  ///< 0: no runs

@@ -22,7 +22,7 @@ namespace {
 
 /// Everything that computes the labels of voxels on demand.
 struct LabelTable {
-    LabelForest forest;                    ///< the parent of each provisional label is its final label
+    LabelNumbers numbers;                  ///< the final label of each provisional one
     std::vector<int64_t> lower;            ///< first slice of each range
     std::vector<uint32_t> bases;           ///< offset of each range's labels
     std::deque<RunFile> runs{};            ///< all runs, with their ranges' own labels; ascending
@@ -47,13 +47,16 @@ public:
         std::ranges::fill(voxels, std::byte{0});
         with_voxel_type(info().type, [&]<class T>(T) {
             SliceRuns slice;
+            std::vector<LabelledRun> runs;
             T* row = reinterpret_cast<T*>(voxels.data());
             for (int64_t z = box.lower.z; z < box.upper.z; ++z) {
                 table_->runs_of(z).read(z, box.lower.y, box.upper.y, slice);
                 const auto after = std::ranges::upper_bound(table_->lower, z);
                 const uint32_t base = table_->bases[size_t(after - table_->lower.begin()) - 1];
-                for (size_t i = 0; i < slice.rows.size(); ++i)
-                    fill_row(slice.runs_of(i), base, box, row + (slice.rows[i].y - box.lower.y) * box.size().x);
+                for (size_t i = 0; i < slice.rows.size(); ++i) {
+                    slice.get_row(i, runs);
+                    fill_row(runs, base, box, row + (slice.rows[i].y - box.lower.y) * box.size().x);
+                }
                 row += box.size().x * box.size().y;
             }
         });
@@ -72,13 +75,13 @@ private:
     {
         for (const LabelledRun& run : runs) {
             // A piece of another process may be damaged.
-            if (uint64_t{base} + run.label >= table_->forest.size())
+            if (uint64_t{base} + run.label >= table_->numbers.size())
                 fail(info().name, ": a run has label ", run.label, "; expected one that its task has made");
             const int64_t begin = std::max<int64_t>(run.begin, box.lower.x);
             const int64_t end = std::min<int64_t>(run.end, box.upper.x);
             if (begin < end)
                 std::fill_n(row + (begin - box.lower.x), end - begin,
-                            static_cast<T>(table_->forest.parent(base + run.label)));
+                            static_cast<T>(table_->numbers[base + run.label]));
         }
     }
 
@@ -144,15 +147,17 @@ private:
         join_ranges(ranges);
         resolve();
         number();
-        table_->forest.drop_counts();
+        table_->numbers = forest_.take_parents();
         for (const RunFile& runs : table_->runs) counts_.run_file_bytes += runs.bytes();
     }
 
     /// Merges the forests of all ranges, and joins the last slice of each range to the first slice of the next one.
     void join_ranges(std::deque<LabelledRange>& ranges)
     {
-        LabelForest& forest = table_->forest;
+        LabelForest& forest = forest_;
         SliceRuns before;
+        RowJoiner joiner;
+        const uint32_t reach = options_.connectivity == Connectivity::faces ? 0 : 1;
         for (LabelledRange& range : ranges) {
             counts_.foreground_voxels += range.foreground_voxels;
             const uint64_t base = forest.append(std::move(range.forest));
@@ -160,10 +165,13 @@ private:
             table_->lower.push_back(range.lower_slice());
             table_->bases.push_back(uint32_t(base));
             for (SliceRuns* slice : {&range.first, &range.last})
-                for (LabelledRun& run : slice->runs) run.label += uint32_t(base);
-            size_t at = 0;
+                for (uint32_t& label : slice->labels) label += uint32_t(base);
+            RowFinder finder(before);
             for (size_t i = 0; i < range.first.rows.size(); ++i)
-                join_slices(range.first.runs_of(i), range.first.rows[i].y, before, at, options_.connectivity, forest);
+                for (const auto& [dy, dz] : rows_before(options_.connectivity))
+                    if (dz < 0)
+                        if (const auto found = finder.find(range.first.rows[i].y + dy))
+                            joiner.join(range.first, i, before, *found, reach, forest);
             before = std::move(range.last);
         }
         counts_.provisional = int64_t(forest.size());
@@ -173,13 +181,13 @@ private:
     /// Makes each label a direct child of its component's smallest label, which also receives all voxel counts.
     void resolve()
     {
-        LabelForest& forest = table_->forest;
+        LabelForest& forest = forest_;
         for (uint64_t i = 0; i < forest.size(); ++i) {
             const auto label = uint32_t(i);
             const uint32_t root = forest.parent(forest.parent(label));
             if (root == label) continue;
             forest.parent(label) = root;
-            forest.voxels(root) += std::exchange(forest.voxels(label), 0);
+            forest.add_voxels(root, forest.take_voxels(label));
         }
     }
 
@@ -210,7 +218,7 @@ private:
     /// Replaces provisional labels by final ones.
     void number()
     {
-        LabelForest& forest = table_->forest;
+        LabelForest& forest = forest_;
         const auto for_each_root = [&](const auto& visit) {
             for (uint64_t i = 0; i < forest.size(); ++i) {
                 const auto label = uint32_t(i);
@@ -248,6 +256,7 @@ private:
 
     VolumeInfo source_info_;
     ComponentOptions options_;
+    LabelForest forest_;
     std::shared_ptr<LabelTable> table_;
 };
 

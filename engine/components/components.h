@@ -3,7 +3,7 @@
 //
 // Slices are read slab by slab and converted to bits and runs. A run takes the label of a run that it touches in the
 // preceding rows, or else a new label. If a run touches several labels, they are joined (label_forest.h). Threads label
-// ranges of slices in parallel; then the ranges are joined. Memory holds a slab and two slices of runs per range and 12
+// ranges of slices in parallel; then the ranges are joined. Memory holds a slab and two slices of runs per range and 8
 // bytes per provisional label (in a noisy volume up to one label per run). The labelled runs themselves go to a
 // temporary file, and only if the labels are wanted. If a source lists its stored blocks (VolumeSource::stored_blocks),
 // only those are traversed, unless the fill value is at or above the threshold.

@@ -12,6 +12,7 @@
 #include "engine/components/component_runs.h"
 #include "engine/components/components.h"
 #include "engine/components/label_forest.h"
+#include "engine/components/touching_runs.h"
 
 namespace shvr {
 
@@ -46,24 +47,54 @@ inline void join_rows(std::span<LabelledRun> row, std::span<const LabelledRun> b
     auto first = before.begin();
     for (LabelledRun& run : row) {
         while (first != before.end() && first->end + reach <= run.begin) ++first;
-        for (auto other = first; other != before.end() && other->begin < run.end + reach; ++other) {
-            if (run.label == NO_LABEL)
-                run.label = other->label;
-            else if (run.label != other->label)
-                run.label = forest.join(run.label, other->label);
-        }
+        for (auto other = first; other != before.end() && other->begin < run.end + reach; ++other)
+            forest.join_into(run.label, other->label, NO_LABEL);
     }
 }
 
-/// Joins a row with the row at the same y in the preceding slice and, for connectivity over corners, with the rows next
-/// to that one. `at` is a position in `before` that each call advances: callers set it to 0 for a slice's first row.
-inline void join_slices(std::span<LabelledRun> row, int64_t y, SliceRuns& before, size_t& at, Connectivity connectivity,
-                        LabelForest& forest)
+/// Joins rows of slices by their runs, which is slower than by their bits, but needs no bits.
+class RowJoiner {
+public:
+    void join(SliceRuns& slice, size_t row, const SliceRuns& other, size_t other_row, uint32_t reach,
+              LabelForest& forest)
+    {
+        slice.get_row(row, runs_);
+        other.get_row(other_row, before_);
+        join_rows(runs_, before_, reach, forest);
+        const std::span<uint32_t> labels = slice.labels_of(row);
+        for (size_t i = 0; i < labels.size(); ++i) labels[i] = runs_[i].label;
+    }
+
+private:
+    std::vector<LabelledRun> runs_, before_;
+};
+
+/// Finds a slice's rows one after another.
+class RowFinder {
+public:
+    explicit RowFinder(const SliceRuns& slice) : slice_(slice) {}
+
+    /// Returns the index of row y, if it has runs. `y` is at most 2 less than in earlier calls.
+    std::optional<size_t> find(int64_t y)
+    {
+        while (at_ > 0 && slice_.rows[at_ - 1].y >= y) --at_;
+        while (at_ < slice_.rows.size() && slice_.rows[at_].y < y) ++at_;
+        return at_ < slice_.rows.size() && slice_.rows[at_].y == y ? std::optional(at_) : std::nullopt;
+    }
+
+private:
+    const SliceRuns& slice_;
+    size_t at_ = 0;
+};
+
+/// Where the rows before a row lie that its runs can touch.
+struct RowBefore {
+    int64_t dy, dz;
+};
+inline std::span<const RowBefore> rows_before(Connectivity connectivity)
 {
-    const uint32_t reach = connectivity == Connectivity::faces ? 0 : 1;
-    while (at < before.rows.size() && int64_t{before.rows[at].y} + reach < y) ++at;
-    for (size_t near = at; near < before.rows.size() && before.rows[near].y <= y + reach; ++near)
-        join_rows(row, before.runs_of(near), reach, forest);
+    static constexpr RowBefore ALL[] = {{-1, 0}, {0, -1}, {-1, -1}, {1, -1}};
+    return std::span(ALL).first(connectivity == Connectivity::faces ? 2 : 4);
 }
 
 /// A range of slices, labelled by one thread with its own set of labels.
@@ -104,30 +135,53 @@ private:
     void label_slice(BitSlab& slab, int64_t z, Connectivity connectivity)
     {
         last.clear();
-        size_t at = 0;
-        slab.for_each_row(z, [&](int64_t y, std::span<const uint32_t> ends) {
-            for (size_t i = 0; i < ends.size(); i += 2) last.runs.push_back({ends[i], ends[i + 1], NO_LABEL});
-            last.rows.push_back({uint32_t(y), uint32_t(last.runs.size())});
-            label_row(at, connectivity);
+        RowFinder before(before_);
+        slab.for_each_row(z, [&](const BitSlab::Row& row) {
+            last.add_row(uint32_t(row.y), row.ends, NO_LABEL);
+            const size_t index = last.rows.size() - 1;
+            for (const auto& [dy, dz] : rows_before(connectivity)) {
+                if (dz < 0) {
+                    if (const std::optional<size_t> found = before.find(row.y + dy))
+                        join(row, before_, *found, row.words_at(dy, dz), connectivity);
+                } else if (index > 0 && last.rows[index - 1].y == row.y + dy) {
+                    join(row, last, index - 1, row.words_at(dy, dz), connectivity);
+                }
+            }
+            finish_row(row);
         });
     }
 
-    /// Labels the last row of `last`.
-    void label_row(size_t& at, Connectivity connectivity)
+    /// Joins the last row of `last` with another row, whose bits are `words` unless null.
+    void join(const BitSlab::Row& row, SliceRuns& other, size_t other_row, const uint64_t* words,
+              Connectivity connectivity)
     {
-        const size_t index = last.rows.size() - 1;
-        const int64_t y = last.rows[index].y;
-        const std::span<LabelledRun> row = last.runs_of(index);
-        if (index > 0 && last.rows[index - 1].y + 1 == y)
-            join_rows(row, last.runs_of(index - 1), connectivity == Connectivity::faces ? 0 : 1, forest);
-        join_slices(row, y, before_, at, connectivity, forest);
-        if (forest.size() + row.size() >= LabelForest::MOST) refuse_labels();
-        for (LabelledRun& run : row) {
-            if (run.label == NO_LABEL) run.label = forest.add();
-            const auto voxels = int64_t(run.end - run.begin);
-            forest.voxels(run.label) += voxels;
-            foreground_voxels += voxels;
+        const uint32_t reach = connectivity == Connectivity::faces ? 0 : 1;
+        if (words == nullptr) return joiner_.join(last, last.rows.size() - 1, other, other_row, reach, forest);
+        auto run = uint32_t(last.first_of(last.rows.size() - 1)), other_run = uint32_t(other.first_of(other_row));
+        const uint64_t* own = row.words;
+        for (const BitLayout::Columns& columns : row.strip->columns) {
+            const auto count = size_t(words_of_row(columns.upper - columns.lower));
+            for_each_touching(own, words, count, reach > 0, run, other_run, [&](uint32_t a, uint32_t b) {
+                forest.join_into(last.labels[a], other.labels[b], NO_LABEL);
+            });
+            own += count;
+            words += count;
         }
+    }
+
+    /// Gives the runs of the last row of `last` that touch no other a label, and counts voxels.
+    void finish_row(const BitSlab::Row& row)
+    {
+        const std::span<uint32_t> labels = last.labels_of(last.rows.size() - 1);
+        if (forest.size() + labels.size() >= LabelForest::MOST) refuse_labels();
+        forest.add_in_place_of(NO_LABEL, labels);
+        int64_t sum = 0;
+        for (size_t i = 0; i < labels.size(); ++i) {
+            const auto voxels = int64_t(row.ends[2 * i + 1] - row.ends[2 * i]);
+            forest.add_voxels(labels[i], voxels);
+            sum += voxels;
+        }
+        foreground_voxels += sum;
     }
 
     void count_held(HeldBytes& held)
@@ -139,6 +193,7 @@ private:
 
     int64_t lower_, upper_;
     SliceRuns before_;
+    RowJoiner joiner_;
     int64_t held_ = 0;
 };
 

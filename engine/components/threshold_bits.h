@@ -34,18 +34,20 @@ private:
     double threshold_;
 };
 
-/// Appends the first voxel of each run of set bits, and the voxel after its last. Bits beyond `voxels` must be 0.
-inline void append_run_ends(std::span<const uint64_t> words, int64_t voxels, std::vector<uint32_t>& ends)
+/// Writes the first voxel of each run of set bits, and the voxel after its last, and returns where they end: after at
+/// most 64 a word, and one. The bits are voxels [lower, upper); bits beyond `upper` must be 0.
+inline uint32_t* write_run_ends(const uint64_t* words, int64_t lower, int64_t upper, uint32_t* to)
 {
     uint64_t before = 0;
-    for (size_t word = 0; word < words.size(); ++word) {
-        const uint64_t bits = words[word];
+    for (int64_t voxel = lower; voxel < upper; voxel += 64) {
+        const uint64_t bits = *words++;
         // An edge bit is set where a bit differs from the one before, which is at the start of a run or after its end.
         uint64_t edges = bits ^ (bits << 1 | before);
         before = bits >> 63;
-        for (; edges != 0; edges &= edges - 1) ends.push_back(uint32_t(64 * word) + uint32_t(std::countr_zero(edges)));
+        for (; edges != 0; edges &= edges - 1) *to++ = uint32_t(voxel) + uint32_t(std::countr_zero(edges));
     }
-    if (before != 0) ends.push_back(uint32_t(voxels));
+    if (before != 0) *to++ = uint32_t(upper);
+    return to;
 }
 
 }  // namespace shvr

@@ -145,6 +145,9 @@ void report(const char* message)
 void keep_heap_compact()
 {
     static_cast<void>(::mallopt(M_MMAP_THRESHOLD, 1 << 20));
+    // Setting one threshold fixes the other at 128 KiB: zstd and Blosc, which allocate for every chunk, would then give
+    // their memory back after each and take a page fault for every page of it (engine/projects/MEASURED.md).
+    static_cast<void>(::mallopt(M_TRIM_THRESHOLD, 2 << 20));
 }
 
 /// Makes lavapipe start as many threads as the job was given: it heeds affinity, but no control groups.

@@ -1,6 +1,6 @@
 #pragma once
 // Connected components of a set of voxels in sparse bricks: runs of voxels along x with labels, joined by union-find
-// (engine/components/label_forest.h). Memory: 4 KiB per brick, 8 bytes per run and 12 bytes per provisional label. One
+// (engine/components/label_forest.h). Memory: 4 KiB per brick, 8 bytes per run and 8 bytes per provisional label. One
 // thread.
 
 #include <map>
