@@ -17,7 +17,7 @@ BrickAtlas::BrickAtlas(gpu::Executor& executor, gpu::Memory& memory, const Stack
         return memory.create(name, desc, gpu::Placement::device, "the volume");
     };
     for (uint32_t image = 0; image < layout.images; ++image)
-        codes_.push_back(create_image("atlas", atlas_desc(codes, layout.slots * slot_codes_)));
+        codes_.push_back(create_image("atlas", atlas_desc(codes, layout.slots * slot_codes_, layout.by_address)));
     cell_ranges_ = create_image("cell ranges", image_desc(Format::r32_uint, slots_ * gpu::BRICK_CELLS));
 }
 
@@ -40,6 +40,7 @@ void BrickAtlas::stage(uint32_t slot, const BrickTexels& texels)
 
 void BrickAtlas::import_codes(FrameGraph& graph, VolumeBinding& volume) const
 {
+    volume.by_address = codes_.front().desc().by_address;
     volume.atlas = graph.import("atlas", codes_.front().import());
     for (size_t image = 1; image < codes_.size(); ++image)
         volume.more_atlases.push_back(graph.import("atlas", codes_[image].import()));

@@ -1,7 +1,7 @@
 #pragma once
 // Brick slots in device memory: the codes of each brick, apron included, and the value ranges of its cells. The codes
-// are stored in one image, or in several if one image cannot hold enough (StackedLayout). The owner assigns bricks to
-// slots (paged_volume.h). Used only by the thread that owns the device.
+// are stored in one image, in several if one image cannot hold enough, or in a buffer (StackedLayout). The owner
+// assigns bricks to slots (paged_volume.h). Used only by the thread that owns the device.
 
 #include <vector>
 

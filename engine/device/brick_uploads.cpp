@@ -57,7 +57,7 @@ void BrickUploads::flush()
     if (targets_.empty()) return;
     FrameGraph graph;
     const Resource staged = graph.import("brick staging", staging_[filling_].bytes.import());
-    if (unpacks_)
+    if (unpacks_ || targets_.front().codes->desc().by_address)
         add_kernels(graph, staged);
     else
         add_copies(graph, staged);
@@ -123,7 +123,8 @@ void BrickUploads::add_kernels(FrameGraph& graph, Resource staged) const
                                 .extent = extent_of(brick),
                                 .cell = targets_[brick].cell,
                                 .ranges = uint32_t(ranges_at(brick) / sizeof(uint32_t))});
-            cells = brick_unpack(graph, staged, graph.import("atlas", image.import()), codes_, cells, jobs);
+            cells = brick_unpack(graph, staged, graph.import("atlas", image.import()), codes_, image.desc().by_address,
+                                 cells, jobs);
         });
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 // Uploads bricks to the device in double-buffered batches: the host fills one batch while the device copies the other,
 // so cutting, host copies and device copies overlap. On CPU devices each brick is copied row by row. On GPUs one kernel
-// unpacks a batch (passes/brick_unpack.h), since some GPU drivers run a dispatch for every slice of a copy. Used only
-// by the thread that owns the device.
+// unpacks a batch (passes/brick_unpack.h), since some GPU drivers run a dispatch for every slice of a copy; so does it
+// where codes are in a buffer. Used only by the thread that owns the device.
 
 #include <array>
 #include <vector>

@@ -70,12 +70,23 @@ glm::uvec3 atlas_layout(uint64_t slots, uint32_t brick_texels, uint32_t max_side
     return {uint32_t(x), uint32_t(y), uint32_t(z)};
 }
 
+bool is_by_address(const gpu::DeviceTraits& traits, AtlasCodes codes, uint64_t bytes)
+{
+    // Kernels count words with a sign.
+    const uint64_t most = std::min({traits.max_allocation_bytes, traits.max_buffer_bytes, uint64_t{1} << 33});
+    return traits.reads_by_address && codes != AtlasCodes::filtered && bytes <= most;
+}
+
 std::optional<StackedLayout> stacked_layout(uint64_t slots, AtlasCodes codes, const gpu::DeviceTraits& traits)
 {
     const uint32_t side = traits.limits.maxImageDimension3D;
     const uint64_t most =
         std::min(traits.max_volume_bytes / slot_code_bytes(codes), max_atlas_slots(gpu::BRICK_TEXELS, side));
     if (slots == 0 || most == 0) return std::nullopt;
+    if (slots <= max_atlas_slots(gpu::BRICK_TEXELS, side)) {
+        const StackedLayout layout{atlas_layout(slots, gpu::BRICK_TEXELS, side, traits.is_cpu), 1, true};
+        if (is_by_address(traits, codes, layout.count() * slot_code_bytes(codes))) return layout;
+    }
     for (uint32_t images = 1; images <= gpu::MAX_ATLASES; ++images) {
         const uint64_t each = (slots + images - 1) / images;
         if (each > most) continue;

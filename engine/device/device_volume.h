@@ -30,10 +30,14 @@ uint64_t max_atlas_slots(uint32_t brick_texels, uint32_t max_side);
 struct StackedLayout {
     glm::uvec3 slots{0};  ///< slots of one image
     uint32_t images = 1;
+    bool by_address = false;  ///< a buffer instead of images
     glm::uvec3 all() const { return slots * glm::uvec3(1, 1, images); }
     uint64_t count() const { return uint64_t{slots.x} * slots.y * slots.z * images; }
 };
-/// A layout of at least this many slots, in as few images as the device's limits allow; null if none is possible.
+/// Whether an atlas of this size is a buffer that kernels read by its address.
+bool is_by_address(const gpu::DeviceTraits& traits, AtlasCodes codes, uint64_t bytes);
+/// A layout of at least this many slots, in a buffer if the device reads those faster, or in as few images as its
+/// limits allow; null if none is possible.
 std::optional<StackedLayout> stacked_layout(uint64_t slots, AtlasCodes codes, const gpu::DeviceTraits& traits);
 
 /// The packed address of slot `index`. Indices increase along x first.

@@ -223,7 +223,7 @@ gpu::BrickLeapJob PagedVolume::job_of(const BrickKey& key, uint32_t slot) const
 VolumeBinding PagedVolume::atlas(FrameGraph& graph)
 {
     atlas_.flush();
-    VolumeBinding volume{.codes = options_.codes, .in_slots = true};
+    VolumeBinding volume{.cell_ranges = atlas_.import_cell_ranges(graph), .codes = options_.codes, .in_slots = true};
     atlas_.import_codes(graph, volume);
     return volume;
 }

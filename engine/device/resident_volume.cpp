@@ -138,8 +138,10 @@ std::optional<ResidentVolume::Shape> ResidentVolume::shape_of(const gpu::Memory&
     const uint32_t max_side = traits.limits.maxImageDimension3D;
     if (bricks + 1 > max_atlas_slots(gpu::BRICK_TEXELS, max_side)) return std::nullopt;
     const glm::uvec3 slots = atlas_layout(bricks + 1, gpu::BRICK_TEXELS, max_side, traits.is_cpu);
+    const glm::uvec3 of_codes = codes_side_by_side(brick_counts);
+    const uint64_t bytes = uint64_t{of_codes.x} * of_codes.y * of_codes.z * code_bytes(codes);
     return Shape{.atlas_slots = slots,
-                 .atlas = atlas_desc(codes, codes_side_by_side(brick_counts)),
+                 .atlas = atlas_desc(codes, of_codes, is_by_address(traits, codes, bytes)),
                  .page_table = buffer_desc(bricks * sizeof(uint32_t)),
                  .cells = image_desc(Format::r32_uint, brick_counts * gpu::BRICK_CELLS)};
 }
@@ -387,7 +389,8 @@ VolumeBinding ResidentVolume::import(FrameGraph& graph) const
                                : std::nullopt,
             .brick_counts = brick_counts_,
             .cell_counts = cell_counts_,
-            .codes = codes_};
+            .codes = codes_,
+            .by_address = atlas_.desc().by_address};
 }
 
 }  // namespace shvr

@@ -1,7 +1,8 @@
 #pragma once
-// A volume with all of its bricks on the device, side by side in one image, together with the value range of every cell
-// and the leap grid, which is updated when visibility or paint changes. Bricks have slot numbers, as ambient light is
-// stored by slot. A volume that does not fit the device budget is refused with a message before any brick is read.
+// A volume with all of its bricks on the device, side by side in one image or buffer, together with the value range of
+// every cell and the leap grid, which is updated when visibility or paint changes. Bricks have slot numbers, as ambient
+// light is stored by slot. A volume that does not fit the device budget is refused with a message before any brick is
+// read.
 //
 // Used only by the thread that owns the executor.
 

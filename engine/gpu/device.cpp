@@ -224,6 +224,7 @@ void Device::read_traits()
 
     traits_.name = properties.properties.deviceName;
     traits_.driver = sentence(driver.driverName, " ", driver.driverInfo);
+    traits_.reads_by_address = keeps_atlas_in_buffer(std::getenv("SHVR_ATLAS"), driver.driverID, driver.driverInfo);
     traits_.is_cpu = properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
     if (traits_.is_cpu) traits_.cpu_threads = uint32_t(processors_allowed());
     traits_.limits = properties.properties.limits;
@@ -290,7 +291,8 @@ void Device::create_device(const DeviceOptions& options)
                                             .pNext = &want13,
                                             .scalarBlockLayout = VK_TRUE,
                                             .hostQueryReset = VK_TRUE,
-                                            .timelineSemaphore = VK_TRUE};
+                                            .timelineSemaphore = VK_TRUE,
+                                            .bufferDeviceAddress = VK_TRUE};
     VkPhysicalDeviceFeatures2 want{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &want12};
     want.features.robustBufferAccess = options.robust_buffers ? VK_TRUE : VK_FALSE;
     want.features.shaderStorageImageExtendedFormats = VK_TRUE;

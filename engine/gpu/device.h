@@ -72,6 +72,7 @@ struct DeviceTraits {
     bool tells_memory_left = false;    ///< VK_EXT_memory_budget
     bool tells_faults = false;         ///< VK_EXT_device_fault
     bool has_memory_priority = false;  ///< VK_EXT_memory_priority
+    bool reads_by_address = false;     ///< exact densities are in a buffer (keeps_atlas_in_buffer)
 };
 
 /// Returns the items of a Vulkan query that is called twice: first for the number of items, then for the items.

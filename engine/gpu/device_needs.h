@@ -12,7 +12,7 @@
 namespace shvr::gpu {
 
 /// Of each resource type, the largest number that any kernel binds; of each size, the maximum over all kernels.
-inline constexpr uint32_t MAX_STORAGE_IMAGES = 13, MAX_STORAGE_BUFFERS = 6, MAX_SAMPLED_IMAGES = 4;
+inline constexpr uint32_t MAX_STORAGE_IMAGES = 13, MAX_STORAGE_BUFFERS = 7, MAX_SAMPLED_IMAGES = 4;
 inline constexpr uint32_t MAX_PUSH_BYTES = 128, MAX_GROUP_THREADS = 128, MAX_SHARED_BYTES = 10592;
 /// Size of the largest buffer that does not grow with the volume: union-find parents of 256^3 voxels (regions/).
 inline constexpr uint32_t MIN_BUFFER_BYTES = 64u << 20;
@@ -34,6 +34,12 @@ std::vector<Need> needs_of(const DeviceHas& has);
 /// Returns why a device with these limits cannot run the kernels, with the value found and the value expected; null if
 /// the device can run them.
 std::optional<std::string> why_too_limited(const DeviceHas& has);
+
+/// Whether densities that kernels read exactly are kept in a buffer, read by its address, instead of images; the bits
+/// are the same. `named`: the value of SHVR_ATLAS, "image" or "buffer", which decides; null or empty if it is not set.
+/// Otherwise a buffer is for drivers that read it faster: llvmpipe of Mesa 23.3 and later, where a load of an image is
+/// a call (shaders/MEASURED.md, "Mesa 25"). `info`: the driver's, as in VkPhysicalDeviceDriverProperties.
+bool keeps_atlas_in_buffer(const char* named, VkDriverId driver, const std::string& info);
 
 /// Returns the message for a system without any Vulkan driver. It names a limit of the process's memory, which can keep
 /// a driver from loading; the loader reports no reason.

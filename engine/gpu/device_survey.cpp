@@ -62,6 +62,8 @@ std::string why_it_cannot(VkPhysicalDevice physical)
     // The shared headers need scalar layout: optional in 1.3, but supported by all desktop drivers and lavapipe.
     if (!has12.scalarBlockLayout)
         return "the Vulkan feature scalarBlockLayout is missing; expected a driver that has it";
+    if (!has12.bufferDeviceAddress)
+        return "the Vulkan feature bufferDeviceAddress is missing; expected a driver that has it";
     const bool stores_r16 = features_of(physical, VK_FORMAT_R16_UNORM) & VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT;
     if (!stores_r16 || !has.features.shaderStorageImageExtendedFormats)
         return "R16_UNORM storage images cannot be read; expected a driver that can read them";

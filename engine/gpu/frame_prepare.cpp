@@ -17,6 +17,13 @@ Placement placement_of(uint64_t bytes)
     return bytes <= MOST ? Placement::values : Placement::upload;
 }
 
+/// What a kernel reads of words that it gets by address, in scalar layout.
+struct AddressBlock {
+    VkDeviceAddress address;
+    glm::uvec3 words;
+    uint32_t unused = 0;
+};
+
 }  // namespace
 
 /// Whether any kernel counts the work of every thread instead of rare events only. If so, the counters are in device
@@ -90,6 +97,9 @@ void Submission::Frame::prepare()
         check_bindings(data, interface, resources);
         prepared[i].kernel = &executor.kernels_.get(data.kernel, data.constants);
         for (const auto& [name, bytes] : data.blocks) block_bytes += aligned(bytes.size(), alignment);
+        for (const Binding& binding : data.bindings)
+            if (resources[binding.resource].desc.by_address && interface.slot(binding.name))
+                block_bytes += aligned(sizeof(AddressBlock), alignment);
         if (interface.slot("counters")) {
             prepared[i].counters_offset = all_counter_bytes;
             all_counter_bytes += aligned(counter_bytes, alignment);
@@ -122,17 +132,22 @@ void Submission::Frame::write_descriptors(const PassData& data, const Prepared& 
         const KernelInterface::Slot& slot = slots[i];
         const auto binding = std::find_if(data.bindings.begin(), data.bindings.end(),
                                           [&](const Binding& b) { return b.name == slot.name; });
+        const auto add_block = [&](std::span<const std::byte> bytes) {
+            std::memcpy(blocks->mapped().data() + block_offset, bytes.data(), bytes.size());
+            buffers[i] = {executor.memory_.object(blocks->import().id).buffer, block_offset, bytes.size()};
+            block_offset += aligned(bytes.size(), executor.device_.traits().limits.minStorageBufferOffsetAlignment);
+        };
         const auto block =
             std::find_if(data.blocks.begin(), data.blocks.end(), [&](const auto& b) { return b.first == slot.name; });
-        if (binding != data.bindings.end()) {
+        if (slot.by_address && binding != data.bindings.end()) {
+            const AddressBlock at{object(binding->resource).address, graph.resources()[binding->resource].desc.texels};
+            add_block(std::as_bytes(std::span(&at, 1)));
+        } else if (binding != data.bindings.end()) {
             const Memory::Object& bound = object(binding->resource);
             buffers[i] = {bound.buffer, 0, graph.resources()[binding->resource].desc.bytes};
             images[i] = {executor.sampler_, bound.view, VK_IMAGE_LAYOUT_GENERAL};
         } else if (block != data.blocks.end()) {
-            std::memcpy(blocks->mapped().data() + block_offset, block->second.data(), block->second.size());
-            buffers[i] = {executor.memory_.object(blocks->import().id).buffer, block_offset, block->second.size()};
-            block_offset +=
-                aligned(block->second.size(), executor.device_.traits().limits.minStorageBufferOffsetAlignment);
+            add_block(block->second);
         } else {
             const Storage& counted = work_counters ? *work_counters : *counters;
             buffers[i] = {executor.memory_.object(counted.import().id).buffer, step.counters_offset, counter_bytes};

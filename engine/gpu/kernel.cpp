@@ -41,6 +41,10 @@ void check_bindings(const PassData& pass, const KernelInterface& interface,
         if (is_buffer != (desc.kind == ResourceDesc::Kind::buffer))
             fail("pass '", pass.name, "' binds '", binding.name, "' to '", resources[binding.resource].name, "', ",
                  is_buffer ? "an image; the kernel expects a buffer" : "a buffer; the kernel expects an image");
+        if (slot->by_address != desc.by_address)
+            fail("pass '", pass.name, "' binds '", binding.name, "' to '", resources[binding.resource].name, "', ",
+                 desc.by_address ? "words with an address; the kernel expects a buffer"
+                                 : "a buffer; the kernel expects words with an address");
         if (!is_buffer && slot->is_flat != desc.is_flat)
             fail("pass '", pass.name, "' binds '", binding.name, "' to '", resources[binding.resource].name, "', a ",
                  desc.is_flat ? 2 : 3, "-D image; the kernel expects a ", slot->is_flat ? 2 : 3, "-D one");

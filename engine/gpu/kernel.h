@@ -27,7 +27,8 @@ struct KernelInterface {
         VkDescriptorType type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
         bool readable = true;
         bool writable = true;
-        bool is_flat = false;  ///< images: 2-D
+        bool is_flat = false;     ///< images: 2-D
+        bool by_address = false;  ///< a block that begins with the address of the buffer that the pass binds
     };
     struct Constant {
         std::string name;

@@ -184,7 +184,8 @@ std::optional<std::string> Memory::why_not(const std::string& name, const Resour
     };
     if (desc.kind == ResourceDesc::Kind::buffer) {
         uint64_t allowed = std::min(traits.max_allocation_bytes, traits.max_buffer_bytes);
-        if (placement == Placement::device) allowed = std::min(allowed, uint64_t(traits.limits.maxStorageBufferRange));
+        if (placement == Placement::device && !desc.by_address)
+            allowed = std::min(allowed, uint64_t(traits.limits.maxStorageBufferRange));
         return desc.bytes > allowed ? std::optional(too_large("buffer", allowed)) : std::nullopt;
     }
     const glm::uvec3& texels = desc.texels;
@@ -224,16 +225,21 @@ Storage Memory::create(const std::string& name, const ResourceDesc& desc, Placem
 
 void Memory::create_buffer(Object& object, const char* purpose)
 {
+    const VkBufferUsageFlags addressed = object.desc.by_address ? VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT : 0;
     const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
                                   .size = object.desc.bytes,
                                   .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
-                                           VK_BUFFER_USAGE_TRANSFER_DST_BIT};
+                                           VK_BUFFER_USAGE_TRANSFER_DST_BIT | addressed};
     SHVR_VK(vkCreateBuffer(device_.handle(), &info, nullptr, &object.buffer));
     device_.set_name(VK_OBJECT_TYPE_BUFFER, reinterpret_cast<uint64_t>(object.buffer), object.name);
     VkMemoryRequirements needs{};
     vkGetBufferMemoryRequirements(device_.handle(), object.buffer, &needs);
     allocate(object, needs, purpose);
     SHVR_VK(vkBindBufferMemory(device_.handle(), object.buffer, object.memory, object.offset));
+    if (!object.desc.by_address) return;
+    const VkBufferDeviceAddressInfo which{.sType = VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO,
+                                          .buffer = object.buffer};
+    object.address = vkGetBufferDeviceAddress(device_.handle(), &which);
 }
 
 void Memory::create_image(Object& object, const char* purpose)
@@ -321,6 +327,9 @@ VkResult Memory::allocate_from_driver(uint64_t bytes, uint32_t allowed, const Ob
     const VkMemoryPriorityAllocateInfoEXT priority{.sType = VK_STRUCTURE_TYPE_MEMORY_PRIORITY_ALLOCATE_INFO_EXT,
                                                    .priority = memory_priority(object.desc, object.placement)};
     const bool has_priority = device_.traits().has_memory_priority;
+    const VkMemoryAllocateFlagsInfo addressed{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO,
+                                              .pNext = has_priority ? &priority : nullptr,
+                                              .flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT};
     std::vector<uint32_t> types = memory_types(device_.memory_properties(), allowed, object.placement);
     if (types.empty()) fail("device ", device_.traits().name, " has no memory for what the host reads or writes");
     if (object.placement == Placement::device && !device_.traits().is_integrated)
@@ -328,7 +337,7 @@ VkResult Memory::allocate_from_driver(uint64_t bytes, uint32_t allowed, const Ob
     VkResult result = VK_SUCCESS;
     for (const uint32_t candidate : types) {
         const VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                                        .pNext = has_priority ? &priority : nullptr,
+                                        .pNext = object.desc.by_address ? &addressed : addressed.pNext,
                                         .allocationSize = bytes,
                                         .memoryTypeIndex = candidate};
         result = vkAllocateMemory(device_.handle(), &info, nullptr, memory);
@@ -347,7 +356,7 @@ VkResult Memory::allocate_from_driver(uint64_t bytes, uint32_t allowed, const Ob
 /// Puts a small object into a shared block. Returns false if the object must have its own allocation.
 bool Memory::allocate_in_block(Object& object, const VkMemoryRequirements& needs)
 {
-    if (needs.size > MemoryBlock::MAX_SHARE) return false;
+    if (needs.size > MemoryBlock::MAX_SHARE || object.desc.by_address) return false;
     const bool is_image = object.image != VK_NULL_HANDLE;
     const auto take = [&](MemoryBlock& block) {
         if (block.placement != object.placement || block.holds_images != is_image) return false;

@@ -108,6 +108,7 @@ public:
         uint64_t offset = 0;           ///< offset in `memory`
         MemoryBlock* block = nullptr;  ///< the block that contains `memory`; null: the object has its own memory
         uint64_t bytes = 0;            ///< as counted against the budget
+        VkDeviceAddress address = 0;   ///< only of words (ResourceDesc::by_address)
         std::byte* mapped = nullptr;
         bool in_general_layout = false;
         ResourceState state;  ///< accesses that the last submitted frame leaves in flight

@@ -1,6 +1,7 @@
 // SPIR-V reflection through SPIRV-Cross's C interface: reads a kernel's declarations and their GLSL names.
 
 #include <algorithm>
+#include <optional>
 
 #include <spirv_cross_c.h>
 
@@ -68,6 +69,16 @@ struct Reflector {
         return members(id);
     }
 
+    /// If a block begins with the address of words (buffer_reference), returns these words' type.
+    std::optional<spvc_type_id> addressed(spvc_type_id id) const
+    {
+        spvc_type block = spvc_compiler_get_type_handle(compiler, id);
+        if (spvc_type_get_num_member_types(block) == 0) return std::nullopt;
+        spvc_type first = spvc_compiler_get_type_handle(compiler, spvc_type_get_member_type(block, 0));
+        if (spvc_type_get_storage_class(first) != SpvStorageClassPhysicalStorageBuffer) return std::nullopt;
+        return spvc_type_get_base_type_id(first);
+    }
+
     void add_slots(KernelInterface& interface, spvc_resource_type kind, VkDescriptorType type) const
     {
         for (const spvc_reflected_resource& resource : list(kind)) {
@@ -85,6 +96,11 @@ struct Reflector {
                 read_only |= std::count(decorations, decorations + count, SpvDecorationNonWritable) > 0;
                 write_only |= std::count(decorations, decorations + count, SpvDecorationNonReadable) > 0;
                 interface.members[slot.name] = block_members(resource.base_type_id);
+                if (const std::optional<spvc_type_id> words = addressed(resource.base_type_id)) {
+                    slot.by_address = true;
+                    read_only = spvc_compiler_has_member_decoration(compiler, *words, 0, SpvDecorationNonWritable);
+                    write_only = spvc_compiler_has_member_decoration(compiler, *words, 0, SpvDecorationNonReadable);
+                }
             }
             slot.writable = !read_only && type != VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
             slot.readable = !write_only;

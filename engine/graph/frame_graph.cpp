@@ -67,6 +67,14 @@ ResourceDesc buffer_desc(uint64_t bytes)
     return {.kind = ResourceDesc::Kind::buffer, .bytes = bytes};
 }
 
+ResourceDesc words_desc(const glm::uvec3& words)
+{
+    return {.kind = ResourceDesc::Kind::buffer,
+            .by_address = true,
+            .texels = words,
+            .bytes = uint64_t(words.x) * words.y * words.z * sizeof(uint32_t)};
+}
+
 ResourceDesc image_desc(Format format, const glm::uvec3& texels)
 {
     const uint64_t bytes = uint64_t(texels.x) * texels.y * texels.z * bytes_per_texel(format);

@@ -40,11 +40,15 @@ struct ResourceDesc {
     Kind kind = Kind::buffer;
     Format format = Format::r32_uint;  ///< images
     bool is_flat = false;              ///< images: 2-D rather than 3-D, with larger size limits; z is 1
+    bool by_address = false;           ///< buffers: kernels get the address and `texels` (see words_desc)
     glm::uvec3 texels{1};              ///< images; if not flat, the image is 3-D even if z is 1
     uint64_t bytes = 0;                ///< buffers: size; images: texels * bytes per texel
     bool operator==(const ResourceDesc&) const = default;
 };
 ResourceDesc buffer_desc(uint64_t bytes);
+/// Describes a buffer of words in a grid, x fastest, without gaps. A kernel gets its address and the grid's size in a
+/// block (a `buffer_reference` and a uvec3), so limits of bound buffers do not apply.
+ResourceDesc words_desc(const glm::uvec3& words);
 ResourceDesc image_desc(Format format, const glm::uvec3& texels);
 /// Describes a 2-D image, for a picture, or for a table stored in rows.
 ResourceDesc picture_desc(Format format, const glm::uvec2& texels);

@@ -34,11 +34,12 @@ inline uint64_t slot_code_bytes(AtlasCodes codes)
     return uint64_t{of_codes.x} * of_codes.y * of_codes.z * code_bytes(codes);
 }
 
-/// An image of `extent` codes.
-inline ResourceDesc atlas_desc(AtlasCodes codes, const glm::uvec3& extent)
+/// An image of `extent` codes, or a buffer of them that kernels read by its address.
+inline ResourceDesc atlas_desc(AtlasCodes codes, const glm::uvec3& extent, bool by_address)
 {
-    return image_desc(codes == AtlasCodes::filtered ? Format::r16_unorm : Format::r32_uint,
-                      extent / glm::uvec3(codes_a_texel(codes), 1, 1));
+    const glm::uvec3 texels = extent / glm::uvec3(codes_a_texel(codes), 1, 1);
+    if (by_address) return words_desc(texels);
+    return image_desc(codes == AtlasCodes::filtered ? Format::r16_unorm : Format::r32_uint, texels);
 }
 
 /// Size in codes of an image with this many contiguous bricks, including the border.

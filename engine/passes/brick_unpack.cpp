@@ -2,10 +2,11 @@
 
 namespace shvr {
 
-Resource brick_unpack(FrameGraph& graph, Resource staged, Resource atlas, AtlasCodes codes, Resource cell_ranges,
-                      std::span<const gpu::BrickUnpackJob> jobs)
+Resource brick_unpack(FrameGraph& graph, Resource staged, Resource atlas, AtlasCodes codes, bool by_address,
+                      Resource cell_ranges, std::span<const gpu::BrickUnpackJob> jobs)
 {
-    Pass pass = graph.compute("brick_unpack", {{"FILTERED", codes == AtlasCodes::filtered}});
+    Pass pass =
+        graph.compute("brick_unpack", {{"FILTERED", codes == AtlasCodes::filtered}, {"BY_ADDRESS", by_address}});
     if (codes != AtlasCodes::filtered) pass.constant("CODE_BYTES", code_bytes(codes));
     pass.read("staged", staged);
     pass.block("jobs", jobs);

@@ -9,8 +9,8 @@
 
 namespace shvr {
 
-/// `atlas`, `codes`, `cell_ranges`: as in VolumeBinding. Returns the new `cell_ranges`.
+/// `atlas`, `codes`, `by_address`, `cell_ranges`: as in VolumeBinding. Returns the new `cell_ranges`.
 [[nodiscard]] Resource brick_unpack(FrameGraph& graph, Resource staged, Resource atlas, AtlasCodes codes,
-                                    Resource cell_ranges, std::span<const gpu::BrickUnpackJob> jobs);
+                                    bool by_address, Resource cell_ranges, std::span<const gpu::BrickUnpackJob> jobs);
 
 }  // namespace shvr

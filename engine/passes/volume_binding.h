@@ -40,7 +40,8 @@ struct VolumeBinding {
     glm::uvec3 brick_counts{1};
     glm::uvec3 cell_counts{1};
     AtlasCodes codes = AtlasCodes::exact16;
-    bool in_slots = false;  ///< paged bricks, with aprons
+    bool by_address = false;  ///< the atlas is a buffer of words, without `more_atlases`
+    bool in_slots = false;    ///< paged bricks, with aprons
 
     bool is_filtered() const { return codes == AtlasCodes::filtered; }
 };
@@ -51,18 +52,34 @@ inline std::vector<std::pair<std::string, uint32_t>> constants_of_codes(const Vo
 {
     std::vector<std::pair<std::string, uint32_t>> constants;
     if (is_stacked) constants.emplace_back("ATLASES", uint32_t(1 + volume.more_atlases.size()));
-    if (!volume.is_filtered()) constants.emplace_back("CODE_BYTES", code_bytes(volume.codes));
+    if (volume.is_filtered()) return constants;
+    constants.emplace_back("CODE_BYTES", code_bytes(volume.codes));
+    if (volume.by_address) constants.emplace_back("BY_ADDRESS", 1);
     return constants;
+}
+
+/// Binds the first image of the atlas and, if it has one, its buffer. Returns the image; of an atlas in a buffer it is
+/// another of the format, which kernels never read.
+inline Resource bind_first_atlas(Pass& pass, const VolumeBinding& volume)
+{
+    if (volume.by_address) {
+        pass.read("atlas_at", volume.atlas);
+    } else if (!volume.is_filtered()) {
+        constexpr std::array<uint32_t, 6> NOWHERE{};
+        pass.block("atlas_at", std::span<const uint32_t>(NOWHERE));
+    }
+    const Resource image = volume.by_address ? volume.cell_ranges : volume.atlas;
+    pass.read("atlas", image);
+    return image;
 }
 
 /// Binds the atlas to a kernel that supports stacked images. If the atlas has fewer images than bindings, the other
 /// bindings get the first image, which kernels never read through these bindings.
 inline void bind_stacked_atlas(Pass& pass, const VolumeBinding& volume)
 {
-    pass.read("atlas", volume.atlas);
+    const Resource first = bind_first_atlas(pass, volume);
     for (size_t i = 0; i + 1 < gpu::MAX_ATLASES; ++i)
-        pass.read("atlas_" + std::to_string(i + 1),
-                  i < volume.more_atlases.size() ? volume.more_atlases[i] : volume.atlas);
+        pass.read("atlas_" + std::to_string(i + 1), i < volume.more_atlases.size() ? volume.more_atlases[i] : first);
 }
 
 /// Binds the atlas to a kernel that supports stacked images only for paged bricks.
@@ -71,7 +88,7 @@ inline void bind_atlas(Pass& pass, const VolumeBinding& volume)
     if (volume.pages)
         bind_stacked_atlas(pass, volume);
     else
-        pass.read("atlas", volume.atlas);
+        bind_first_atlas(pass, volume);
 }
 
 /// Binds the atlas and sets its constants.

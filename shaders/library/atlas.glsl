@@ -1,6 +1,6 @@
-// Reads texels of the density atlas. Needs bricks.h and `atlas`, an r32ui image or, if FILTERED, a sampler3D of
-// R16_UNORM codes. Codes have 16 bits. A texel of r32ui contains two codes along x, the first in its low half. In 8-bit
-// volumes (CODE_BYTES is 1), codes are multiples of 257 and a texel contains four of them.
+// Reads texels of the density atlas. Needs bricks.h, GL_EXT_buffer_reference and `atlas`: an r32ui image or, if
+// FILTERED, a sampler3D of R16_UNORM codes. Codes have 16 bits. A texel of r32ui contains two codes along x, the first
+// in its low half. In 8-bit volumes (CODE_BYTES is 1), codes are multiples of 257 and a texel contains four of them.
 //
 // Paged bricks are in slots; bricks of a resident volume are contiguous (bricks.h).
 //
@@ -18,6 +18,18 @@ const int WORD_SHIFT = CODE_BYTES == 1u ? 2 : 1;   // shift that converts a code
 const uint CODE_BITS = 8u * CODE_BYTES;
 const uint CODE_MASK = CODE_BYTES == 1u ? 0xffu : 0xffffu;
 const uint CODE_UNIT = CODE_BYTES == 1u ? 257u : 1u;
+
+// BY_ADDRESS: the texels are words of a buffer, x fastest, instead of an image's.
+layout(constant_id = 16) const uint BY_ADDRESS = 0u;
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer AtlasWords { uint at[]; };
+layout(binding = 31, scalar) readonly buffer AtlasAt {
+    AtlasWords words;
+    uvec3 size;
+} atlas_at;
+// Read once: loops would read them at each use.
+AtlasWords atlas_words = atlas_at.words;
+uvec3 atlas_size = atlas_at.size;
+uint atlas_slice = atlas_size.x * atlas_size.y, last_atlas_word = atlas_slice * atlas_size.z - 1u;
 
 // The right shift that moves the code at x to the low bits of its word.
 uint shift_to(int x)
@@ -74,6 +86,10 @@ float atlas_texel(ivec3 at)
 #else
 uint atlas_word(ivec3 at)
 {
+    if (BY_ADDRESS != 0u) {
+        const uint word = uint(at.x) + atlas_size.x * uint(at.y) + atlas_slice * uint(at.z);
+        return atlas_words.at[min(word, last_atlas_word)];
+    }
 #ifdef STACKED
     if (ATLASES > 1u) {
         const int height = imageSize(atlas).z, which = atlas_of(at.z, height);
@@ -93,7 +109,7 @@ int last_along_x()
 #ifdef FILTERED
     return textureSize(atlas, 0).x - 1;
 #else
-    return (imageSize(atlas).x << WORD_SHIFT) - 1;
+    return ((BY_ADDRESS != 0u ? int(atlas_size.x) : imageSize(atlas).x) << WORD_SHIFT) - 1;
 #endif
 }
 

@@ -5,6 +5,7 @@
 // variants: PAGED FILTERED
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_buffer_reference : require
 #extension GL_EXT_scalar_block_layout : require
 #include "../pages.h"
 #include "occlusion_bake.h"

@@ -5,6 +5,7 @@
 // PAGED: a ray may wait for the brick of its sample (raycast.h, KEPT_ALL).
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_buffer_reference : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_control_flow_attributes : require
 #include "../raycast.h"

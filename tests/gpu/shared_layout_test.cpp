@@ -253,7 +253,7 @@ TEST_CASE("members of shared structs lie where C++ puts them")
         check_members(kernel, "push", brick_leap_params());
         check_members(kernel, "jobs", brick_leap_jobs());
     }
-    for (const char* kernel : {"brick_unpack", "brick_unpack_filtered"})
+    for (const char* kernel : {"brick_unpack", "brick_unpack_filtered", "brick_unpack_by_address"})
         check_members(kernel, "jobs",
                       {MEMBER(BrickUnpackJob, code), MEMBER(BrickUnpackJob, codes), MEMBER(BrickUnpackJob, extent),
                        MEMBER(BrickUnpackJob, cell), MEMBER(BrickUnpackJob, ranges)});

@@ -95,6 +95,30 @@ TEST_CASE("bricks are in as few images as the device's limits allow, all of one 
     CHECK(!stacked_layout(1, AtlasCodes::exact16, traits_of(16, GIB)));
 }
 
+TEST_CASE("a buffer holds bricks that would need several images, and images those that no buffer holds")
+{
+    gpu::DeviceTraits traits = traits_of(2048, uint64_t{24} << 20, true);
+    traits.max_allocation_bytes = traits.max_buffer_bytes = GIB;
+    const auto layout_of = [&](uint64_t slots, AtlasCodes codes) {
+        return stacked_layout(slots, codes, traits).value();
+    };
+    CHECK(!layout_of(600, AtlasCodes::exact8).by_address);
+    traits.reads_by_address = true;
+    for (const AtlasCodes codes : {AtlasCodes::exact8, AtlasCodes::exact16}) {
+        const StackedLayout layout = layout_of(600, codes);
+        CHECK(layout.by_address);
+        CHECK(layout.images == 1);
+        CHECK(layout.count() >= 600);
+    }
+    CHECK(!layout_of(600, AtlasCodes::filtered).by_address);  // a sampler reads them
+    traits.max_allocation_bytes = uint64_t{24} << 20;
+    CHECK(!layout_of(600, AtlasCodes::exact8).by_address);
+    CHECK(layout_of(600, AtlasCodes::exact8).images > 1);
+    traits.max_allocation_bytes = traits.max_buffer_bytes = 64 * GIB;
+    CHECK(is_by_address(traits, AtlasCodes::exact8, 8 * GIB));
+    CHECK(!is_by_address(traits, AtlasCodes::exact8, 8 * GIB + 4));  // a kernel's index of a word has a sign
+}
+
 TEST_CASE("the slots of a layout are each another address, none of which has more than a byte an axis")
 {
     const glm::uvec3 counts(7, 7, 4 * 7);
