@@ -15,9 +15,9 @@ constexpr double TRACE_WIDTH = 2.5;  ///< for highlighted parts of the trace
 constexpr double HALO = 2.0;         ///< pixels added around a stroke, to set it off from what is behind it
 constexpr double DASH = 5.0, GAP = 4.0;
 constexpr glm::dvec3 DARK(0.02);
-/// Colours of the axes x, y and z, and one more; a frustum's edges that lead away from the eye have these four colours.
-constexpr std::array<glm::dvec3, 4> COLORS{glm::dvec3(0.87, 0.05, 0.03), glm::dvec3(0.05, 0.55, 0.08),
-                                           glm::dvec3(0.06, 0.22, 0.95), glm::dvec3(0.95, 0.45, 0.02)};
+/// Colours of the axes x, y and z.
+constexpr std::array<glm::dvec3, 3> COLORS{glm::dvec3(0.87, 0.05, 0.03), glm::dvec3(0.05, 0.55, 0.08),
+                                           glm::dvec3(0.06, 0.22, 0.95)};
 
 /// Clips a line to the pane plus a small margin (Liang and Barsky 1984); null if nothing is left.
 std::optional<std::pair<glm::dvec2, glm::dvec2>> clipped(const glm::dvec2& from, const glm::dvec2& to,
@@ -47,28 +47,30 @@ public:
     explicit Strokes(const glm::uvec2& pixels) : pixels_(pixels) {}
 
     void line(const glm::dvec2& from, const glm::dvec2& to, const glm::dvec3& color, bool stippled = false,
-              double width = WIDTH)
+              double width = WIDTH, double halo = HALO)
     {
         const auto seen = clipped(from, to, pixels_);
         if (!seen) return;
         const auto [a, b] = *seen;
         const double length = glm::distance(a, b);
-        if (!stippled) return add(a, b, color, width);
+        if (!stippled) return add(a, b, color, width, halo);
         for (double at = 0.0; at < length; at += DASH + GAP)
-            add(glm::mix(a, b, at / length), glm::mix(a, b, std::min(at + DASH, length) / length), color, width);
+            add(glm::mix(a, b, at / length), glm::mix(a, b, std::min(at + DASH, length) / length), color, width, halo);
     }
-    void closed(const std::vector<glm::dvec2>& points, const glm::dvec3& color, double width = WIDTH)
+    void closed(const std::vector<glm::dvec2>& points, const glm::dvec3& color, double width = WIDTH,
+                double halo = HALO)
     {
         for (size_t i = 0; i < points.size(); ++i)
-            line(points[i], points[(i + 1) % points.size()], color, false, width);
+            line(points[i], points[(i + 1) % points.size()], color, false, width, halo);
     }
     /// Returns all strokes, preceded by their halos, so that no halo covers another stroke.
     std::vector<Stroke> taken()
     {
         std::vector<Stroke> all;
-        for (Stroke stroke : strokes_) {
+        for (size_t i = 0; i < strokes_.size(); ++i) {
+            Stroke stroke = strokes_[i];
             stroke.color = DARK;
-            stroke.width += HALO;
+            stroke.width += halos_[i];
             all.push_back(stroke);
         }
         all.insert(all.end(), strokes_.begin(), strokes_.end());
@@ -76,12 +78,14 @@ public:
     }
 
 private:
-    void add(const glm::dvec2& from, const glm::dvec2& to, const glm::dvec3& color, double width)
+    void add(const glm::dvec2& from, const glm::dvec2& to, const glm::dvec3& color, double width, double halo)
     {
         strokes_.push_back({from, to, color, width});
+        halos_.push_back(halo);
     }
     glm::uvec2 pixels_;
     std::vector<Stroke> strokes_;
+    std::vector<double> halos_;  ///< pixels added around each
 };
 
 /// Returns the corners of a camera's frustum, near 0 ... 3 and far 4 ... 7, both in the order top left, top right,
@@ -99,25 +103,46 @@ std::array<glm::dvec3, 8> frustum_corners(const Camera& camera, const glm::uvec2
     return corners;
 }
 
-void add_frustum(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, const OverlayScene& scene,
-                 const VolumeInfo& volume)
+/// Returns the convex hull of points, by Andrew's monotone chain (1979).
+std::vector<glm::dvec2> hull_of(std::vector<glm::dvec2> points)
 {
-    const std::array<glm::dvec3, 8> corners = frustum_corners(scene.main, scene.main_pixels, volume);
-    const glm::dvec3 forward = axes_of(pane.shot.camera).forward;
-    glm::dvec3 middle(0.0);
-    for (const glm::dvec3& corner : corners) middle += corner / 8.0;
-    const auto edge = [&](size_t a, size_t b) {
-        const auto from = project(pane.shot.camera, pixels, corners[a]);
-        const auto to = project(pane.shot.camera, pixels, corners[b]);
-        if (!from || !to || corners[a] == corners[b]) return;
-        // Edges that lie nearer than the frustum's centre, as seen in this pane, are solid; others are stippled.
-        const bool is_far = glm::dot(0.5 * (corners[a] + corners[b]) - middle, forward) > 0.0;
-        strokes.line(from->pixel, to->pixel, 0.5 * (COLORS[a % 4] + COLORS[b % 4]), is_far);
+    std::ranges::sort(points,
+                      [](const glm::dvec2& a, const glm::dvec2& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    if (points.size() < 3) return points;
+    const auto turns_left = [](const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
+        return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) > 0.0;
     };
-    for (size_t i = 0; i < 4; ++i) edge(i, i + 4);
-    for (const size_t plane : {0, 4})
-        for (const auto& [a, b] : {std::pair{0, 1}, std::pair{0, 2}, std::pair{1, 3}, std::pair{2, 3}})
-            edge(plane + size_t(a), plane + size_t(b));
+    std::vector<glm::dvec2> hull;
+    for (int side = 0; side < 2; ++side) {
+        const size_t first = hull.size();
+        for (const glm::dvec2& point : points) {
+            while (hull.size() >= first + 2 && !turns_left(hull[hull.size() - 2], hull.back(), point)) hull.pop_back();
+            hull.push_back(point);
+        }
+        hull.pop_back();  // the first point of the other side
+        std::ranges::reverse(points);
+    }
+    return hull;
+}
+
+/// Draws the volume's outline and that of what the main camera sees, as thin lines of one colour each.
+void add_overview(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, const OverlayScene& scene,
+                  const VolumeInfo& volume)
+{
+    constexpr double THIN = 1.0, THIN_HALO = 1.0;  // pixels
+    constexpr glm::dvec3 OUTLINE(0.3), SEEN(0.95, 0.62, 0.18);
+    const auto outline = [&](const std::array<glm::dvec3, 8>& corners, const glm::dvec3& color) {
+        std::vector<glm::dvec2> points;
+        for (const glm::dvec3& corner : corners)
+            if (const auto at = project(pane.shot.camera, pixels, corner)) points.push_back(at->pixel);
+        strokes.closed(hull_of(std::move(points)), color, THIN, THIN_HALO);
+    };
+    std::array<glm::dvec3, 8> box;
+    for (size_t i = 0; i < 8; ++i)
+        box[i] = glm::dvec3(volume.size) * volume.spacing * glm::dvec3(i & 1, i >> 1 & 1, i >> 2 & 1);
+    outline(box, OUTLINE);
+    outline(frustum_corners(scene.main, scene.main_pixels, volume), SEEN);
 }
 
 /// Draws where the other two slices cut this one: two lines in the colours of their axes, with a gap where they meet.
@@ -319,7 +344,7 @@ std::vector<Stroke> strokes_of(const Pane& pane, const OverlayScene& scene, cons
     const glm::uvec2 pixels = pane.box.end - pane.box.begin;
     Strokes strokes(pixels);
     if (pane.kind == Pane::Kind::map || pane.kind == Pane::Kind::slice) add_border(strokes, pane, pixels);
-    if (pane.kind == Pane::Kind::map) add_frustum(strokes, pane, pixels, scene, volume);
+    if (pane.kind == Pane::Kind::map) add_overview(strokes, pane, pixels, scene, volume);
     if (pane.kind == Pane::Kind::slice) add_cross(strokes, pane, pixels, scene);
     // Anaglyphs get no outline: it can only be drawn for one camera, so the two eyes would see it at a wrong depth.
     if ((scene.probe.is_outlined || scene.probe.has_arrow) && pane.kind != Pane::Kind::slice && !pane.shot.right_eye)

@@ -1,7 +1,7 @@
 #pragma once
-// Lines over a picture: the main camera's frustum in maps, the positions of slices, and the probe if it is hidden or
-// out of sight. They are computed once, as straight strokes in pixels. The window draws these with its own renderer;
-// `draw_strokes` draws them into image files. Pure functions; any thread.
+// Lines over a picture: outlines of the volume and of the main camera's frustum in maps, the positions of slices, and
+// the probe if it is hidden or out of sight. They are computed once, as straight strokes in pixels. The window draws
+// these with its own renderer; `draw_strokes` draws them into image files. Pure functions; any thread.
 
 #include <optional>
 #include <span>

@@ -4,7 +4,7 @@ import unittest
 
 from harness import Volume
 from seen import Seen, only_panel
-from window import WINDOW
+from window import SIDE_PANEL, WINDOW
 
 
 class Widgets(Seen):
@@ -239,18 +239,28 @@ class Widgets(Seen):
         self.assertIn("0.1", session.read_text())
         self.assertNotIn("0.10000000149", session.read_text())
 
-    def test_hints_are_shown_once(self):
+    def picture(self):
+        """Rows of the graphics window, once it is sharp and nothing is drawn any more."""
+        self.see_picture()
+        self.until(self.rests, "window at rest")
+        return [row[:3 * (WINDOW[0] - SIDE_PANEL - 8)] for row in self.pixels()[2][80:WINDOW[1] - 60]]
+
+    def test_hints_are_shown_once_and_move_no_pixel_of_the_picture(self):
         session = self.write_ball()
         self.open_scan(session)
+        before = self.picture()
         for words, button in (("Drag to turn the volume", "Next hint"), ("The bar at the top", "Next hint"),
                               ("Everything can be undone", "Done")):
             self.see(words, "First hints")
             self.click_on(button, "First hints")
             self.see_no_more(words)
         self.see_no_more("", "First hints")
+        after = self.picture()
+        self.assertEqual([y for y, row in enumerate(before) if row != after[y]], [])
         self.finish()
         self.open_scan(session)
         self.assertEqual(self.seen(window="First hints"), [])
+        self.assertGreater(len(set(after)), 50)   # rows that show something
         self.finish()
 
     def after(self, label):

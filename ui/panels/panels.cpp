@@ -280,15 +280,16 @@ Layout draw_panels(const Model& model, const glm::uvec2& window, Actions& action
             side = float(std::round(side_units(wanted, size.x, font)));
         }
     if (has_tools) tool_bar({0.0f, bar}, size.x, model, actions);
-    if (side > 0.0f) side_panel({size.x - side, top}, {side, height}, model, actions);
+    if (side > 0.0f) {
+        const float hints = std::min(first_hints(model, {size.x - side, top}, side, actions), 0.5f * height);
+        side_panel({size.x - side, top + hints}, {side, height - hints}, model, actions);
+    }
     if (model.is_open)
         floating_panels(model, {size.x, size.y}, actions);
     else
         start_page(model, actions);
     status_bar(model, window, actions);
-    float banners = notices(model, {0.0f, top}, size.x - side, actions);
-    if (model.is_open) banners += first_hints(model, {0.0f, top + banners}, size.x - side, actions);
-    banners = std::min(banners, 0.5f * height);
+    const float banners = std::min(notices(model, {0.0f, top}, size.x - side, actions), 0.5f * height);
     if (model.shows_help) help_window(model, actions);
     if (model.shows_preferences) preferences_window(model, actions);
     if (model.shows_palette) palette_window(model, actions);

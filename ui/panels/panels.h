@@ -76,7 +76,7 @@ void tool_bar(const ImVec2& at, float width, const Model& model, Actions& action
 void place_kept_window(const char* id, const glm::dvec2& usual_size, const Model& model);
 /// Call after Begin: stores the window's position and size when the mouse is released.
 void keep_window(const char* id, const Model& model, Actions& actions);
-/// Draws the hints of the first start over the whole width at `begin`, until they are dismissed. Returns the height.
+/// Draws the hints of the first start over that width of the side panel, until they are dismissed. Returns the height.
 float first_hints(const Model& model, const ImVec2& begin, float width, Actions& actions);
 void preferences_window(const Model& model, Actions& actions);
 void help_window(const Model& model, Actions& actions);

@@ -240,7 +240,7 @@ TEST_CASE("a probe out of sight has an arrow at the border, towards it")
     CHECK(strokes_of(pane, scene, volume).empty());
 }
 
-TEST_CASE("a map shows the frustum: near edges solid, far ones stippled")
+TEST_CASE("a map shows the outlines of the volume and of the frustum, thin and whole, of one colour each")
 {
     const VolumeInfo volume = volume_of_size({40, 30, 50});
     Camera main;
@@ -252,12 +252,26 @@ TEST_CASE("a map shows the frustum: near edges solid, far ones stippled")
     const OverlayScene scene{.main = main, .main_pixels = {400, 300}, .probe = {.is_outlined = false}};
     for (size_t i = 1; i < 4; ++i) {
         const std::vector<Stroke> strokes = strokes_of(panes[i], scene, volume);
-        size_t dashes = 0, whole = 0;
-        for (size_t k = strokes.size() / 2; k < strokes.size(); ++k)
-            (glm::distance(strokes[k].from, strokes[k].to) < 5.0 + 1e-9 ? dashes : whole) += 1;
-        CHECK(whole >= 4);
-        CHECK(whole <= 8);
-        CHECK(dashes > 4);
+        // Behind the borders to other panes: the volume's four sides, then the frustum, each closed.
+        const size_t borders = (panes[i].box.begin.x > 0) + (panes[i].box.begin.y > 0);
+        const std::span<const Stroke> lines = std::span(strokes).subspan(strokes.size() / 2 + borders);
+        REQUIRE(lines.size() >= 4 + 3);
+        CHECK(lines.size() <= 4 + 8);
+        const glm::dvec3 extent = glm::dvec3(volume.size) * volume.spacing;
+        for (size_t k = 0; k < lines.size(); ++k) {
+            CHECK(lines[k].width == 1.0);
+            CHECK(strokes[borders + k].width == 2.0);  // its halo
+            CHECK(lines[k].color == lines[k < 4 ? 0 : 4].color);
+            const size_t next = k == 3 ? 0 : k + 1 == lines.size() ? 4 : k + 1;
+            CHECK(glm::distance(lines[k].to, lines[next].from) < 1e-9);
+        }
+        CHECK(lines[0].color != lines[4].color);
+        // The volume's sides are where its corners are.
+        const auto corner = project(panes[i].shot.camera, panes[i].pixels(), extent);
+        REQUIRE(corner.has_value());
+        double nearest = 1e9;
+        for (size_t k = 0; k < 4; ++k) nearest = std::min(nearest, glm::distance(lines[k].from, corner->pixel));
+        CHECK(nearest < 1e-9);
     }
 }
 

@@ -1,4 +1,4 @@
-"""Counts clicks and keys until a task is done: a typed text, a drop and a click count as one each."""
+"""Counts clicks and keys until a task is done: a typed text, a drop, a click and a double click count as one each."""
 from seen import Seen
 
 
@@ -8,6 +8,13 @@ class Counted(Seen):
 
     def click(self, text, window=None):
         self.click_on(text, window)
+        self.inputs += 1
+
+    def double_click(self, text, window=None):
+        x, y = self.middle_of(self.see_at_rest(text, window))
+        self.do("mousemove", x - 2, y, "mousemove", x, y, pause_s=0)
+        self.see_frames()
+        self.do("click", "--repeat", 2, "--delay", 60, 1, pause_s=0)
         self.inputs += 1
 
     def key(self, chord):

@@ -8,7 +8,8 @@ from counted import Counted  # noqa: E402
 from harness import Volume  # noqa: E402
 from xdnd import Source  # noqa: E402
 
-MOST = {"scan to a 3-D picture by a drop": 2, "recent scan to its picture": 2, "turntable movie": 3,
+MOST = {"scan to a 3-D picture by a drop": 2, "by a double click in the chooser": 2, "by keys in the chooser": 2,
+        "recent scan to its picture": 2, "turntable movie": 3,
         "threshold of the whole volume": 3, "export mask, trace and measures": 2, "the same with the mouse": 3,
         "load a mask": 3, "load a mask that is suggested, with the mouse": 3, "spacing": 4, "import a scan": 3,
         "set a value": 3}
@@ -33,6 +34,35 @@ class Goals(Counted):
         self.until(lambda: self.frame()["sharp"], "sharp picture")
         self.took("recent scan to its picture")
         self.finish()
+
+    def open_in_chooser(self, task, choose, count=1):
+        """From a start in a folder with that many scans and a folder, to the picture."""
+        scans = self.folder / "scans"
+        (scans / "deep").mkdir(parents=True)
+        (scans / "notes.txt").write_text("no scan")
+        names = [f"leaf{i}.nrrd" for i in range(count)]
+        for name in names:
+            (scans / name).write_bytes(b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 16 16 16\nencoding: raw\n\n" +
+                                       bytes(range(256)) * 16)
+        self.view(preferences={"hints_seen": 3, "recent": [{"path": str(scans / names[0])}]})
+        self.see("Open the example")
+        self.key("Ctrl+O")
+        choose(names[-1])
+        self.see("Transfer function", "Side panel")
+        self.until(lambda: self.frame()["sharp"], "sharp picture")
+        self.took(task)
+        messages = self.finish()["messages"]
+        self.assertTrue(any(line.startswith("Opened ") and names[-1] in line for line in messages), messages)
+
+    def test_a_double_click_in_the_chooser_opens_a_scan(self):
+        self.open_in_chooser("by a double click in the chooser",
+                             lambda name: self.double_click(name, "Open a volume"), count=2)
+
+    def test_enter_in_the_chooser_opens_the_only_scan_of_a_folder(self):
+        def choose(name):
+            self.see_at_rest(name, "Open a volume")
+            self.key("Return")
+        self.open_in_chooser("by keys in the chooser", choose)
 
     def test_a_turntable_movie(self):
         self.open_scan(self.write_ball(volume={"procedural": "sphere", "size": [16, 16, 16]}),

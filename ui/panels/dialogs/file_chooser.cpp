@@ -89,9 +89,19 @@ void FileChooser::ask(const fs::path& begin, std::vector<Place> places)
         enter(whole.parent_path());
         text_ = whole.string();
         follow(whole);
+        suggest_only_file();
     }
     if (const fs::path path = typed_path(text_, list_.folder()); path.parent_path() == list_.folder())
         wanted_name_ = path.filename().string();
+}
+
+/// Selects the file of the listed folder if it is the only one that SHVR opens there, so that Enter opens it.
+void FileChooser::suggest_only_file()
+{
+    if (question_.wanted != Wanted::scan || text_ != with_slash(list_.folder()) || list_.is_reading()) return;
+    const size_t size = list_.size();  // files come after folders
+    if (size == 0 || list_.at(size - 1).is_folder || (size > 1 && !list_.at(size - 2).is_folder)) return;
+    select(size - 1);
 }
 
 void FileChooser::ask_again(const fs::path& path, std::vector<Place> places, std::string failure)

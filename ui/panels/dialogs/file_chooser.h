@@ -46,6 +46,7 @@ private:
     void filter_row();
     void enter(const std::filesystem::path& folder);
     void select(size_t row);
+    void suggest_only_file();
     void path_field();
     void follow_typed();
     void follow(const std::filesystem::path& folder);

@@ -1,4 +1,4 @@
-// Hints at the first start, in a strip above the picture: they cover nothing of the object.
+// Hints at the first start, in a strip above the side panel: they neither cover nor move the picture.
 
 #include <algorithm>
 
