@@ -97,7 +97,7 @@ class Operations(Operating):
         self.choose_of("Keep", "the largest part", "the part that is clicked")
         self.see("click the part to keep", OPERATIONS)
         self.check_follows(lambda: self.do("mousemove", x + 10, y, "click", 1, pause_s=0), "preview_operation")
-        self.assertEqual(len(self.previewed()["at"]), 3)
+        self.until(lambda: len(self.previewed().get("at", [])) == 3, "the place that was clicked")
         self.see("Islands: ", OPERATIONS)
 
     def test_the_preview_of_growing_from_seeds_follows_each_stroke(self):
