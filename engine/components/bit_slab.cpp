@@ -69,8 +69,9 @@ int64_t BitSlab::thickness_of(const BitLayout::Layer& layer) const
 
 bool BitSlab::read(int64_t z, int64_t end)
 {
-    const BitLayout::Layer* const layer = std::exchange(layer_, layout_.layer_from(z));
-    if (layer_ == nullptr || std::max(z, layer_->lower) >= end) return false;
+    const BitLayout::Layer* const next = layout_.layer_from(z);
+    if (next == nullptr || std::max(z, next->lower) >= end) return false;  // the present slab stays as it is
+    const BitLayout::Layer* const layer = std::exchange(layer_, next);
     const int64_t lower = std::exchange(lower_, std::max(z, layer_->lower));
     if (layer == layer_ && upper_ == lower_)
         before_.assign(words_.begin() + (upper_ - 1 - lower) * layer_->words,
