@@ -246,7 +246,7 @@ class Export(CliTest):
         label = read_by_zarr(self, self.folder / "own.zarr", self.folder / "bare")["label"]
         self.assertEqual([color["label-value"] for color in label["colors"]], [3, 5, 12])
         self.assertEqual(label["colors"][0]["rgba"], [255, 128, 0, 51])
-        self.assertEqual(label["colors"][2]["rgba"], [0x18, 0x17, 0xff, 255])  # the second of the ten
+        self.assertEqual(label["colors"][2]["rgba"], [0x11, 0xa6, 0x99, 255])  # the second of the ten
         self.assertEqual(label["properties"], [{"label-value": 3, "name": "vessel"},
                                                {"label-value": 5, "name": "not painted"},
                                                {"label-value": 12, "name": "group 12"}])
@@ -262,7 +262,7 @@ class Export(CliTest):
                                  annotation={"mask": "own.zarr"})
         self.check("export", own, "--mask", self.folder / "again.zarr")
         again = json.loads((self.folder / "again.zarr" / ".zattrs").read_text())["image-label"]
-        self.assertEqual(again["colors"][0]["rgba"], [203, 242, 0, 255])
+        self.assertEqual(again["colors"][0]["rgba"], [83, 91, 191, 255])
         self.assertEqual([entry["name"] for entry in again["properties"]], ["mine", "not painted", "group 12"])
 
     def test_a_project_takes_its_mask_as_labels_and_knows_it_again(self):

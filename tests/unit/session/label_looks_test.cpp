@@ -50,7 +50,7 @@ TEST_CASE("looks are those of the groups that are painted or set up, with what t
     const auto looks = label_looks(groups, painted_in({2, 9}));
     REQUIRE(looks.size() == 3);
     CHECK((looks[0].value == 2 && looks[0].name == "group 2" &&
-           looks[0].rgba == std::array<uint8_t, 4>{24, 23, 255, 255}));
+           looks[0].rgba == std::array<uint8_t, 4>{17, 166, 153, 255}));
     CHECK((looks[1].value == 7 && looks[1].name == "vein" && looks[1].rgba == std::array<uint8_t, 4>{255, 0, 128, 51}));
     CHECK((looks[2].value == 9 && looks[2].name == "group 9" && looks[2].rgba == looks[1].rgba));
 }
@@ -58,7 +58,7 @@ TEST_CASE("looks are those of the groups that are painted or set up, with what t
 TEST_CASE("groups that a session does not define take what the label image says, where it says something else")
 {
     const Store store(R"({"version": "0.4", "colors": [
-        {"label-value": 1, "rgba": [254, 48, 153, 255]}, {"label-value": 2, "rgba": [24, 23, 255, 128]},
+        {"label-value": 1, "rgba": [243, 100, 151, 255]}, {"label-value": 2, "rgba": [17, 166, 153, 128]},
         {"label-value": 3, "rgba": [0, 255, 0, 255]}, {"label-value": 4, "rgba": [1, 2, 3, 4]},
         {"label-value": 0, "rgba": [9, 9, 9, 9]}, {"label-value": 256, "rgba": [9, 9, 9, 9]},
         {"label-value": -1, "rgba": [9, 9, 9, 9]}, {"label-value": 3, "rgba": [5, 5, 5, 5]}],
