@@ -36,10 +36,10 @@ std::vector<Need> needs_of(const DeviceHas& has);
 std::optional<std::string> why_too_limited(const DeviceHas& has);
 
 /// Whether densities that kernels read exactly are kept in a buffer, read by its address, instead of images; the bits
-/// are the same. `named`: the value of SHVR_ATLAS, "image" or "buffer", which decides; null or empty if it is not set.
-/// Otherwise a buffer is for drivers that read it faster: llvmpipe of Mesa 23.3 and later, where a load of an image is
-/// a call (shaders/MEASURED.md, "Mesa 25"). `info`: the driver's, as in VkPhysicalDeviceDriverProperties.
-bool keeps_atlas_in_buffer(const char* named, VkDriverId driver, const std::string& info);
+/// are the same. `named`: the value of SHVR_ATLAS, "image" or "buffer"; null or empty, if it is not set: images. A buffer
+/// may be faster with llvmpipe of Mesa 23.3 and later, where a load of an image is a call (shaders/MEASURED.md,
+/// "Mesa 25").
+bool keeps_atlas_in_buffer(const char* named);
 
 /// Returns the message for a system without any Vulkan driver. It names a limit of the process's memory, which can keep
 /// a driver from loading; the loader reports no reason.
