@@ -84,6 +84,7 @@ TEST_CASE("a far volume that must give way to paint keeps fewer bricks, shows wh
         Session session = session_of(0.3, false);
         session.transfer_function =  // coarse levels average thin tubes away
             TransferFunction({{0.0, glm::dvec3(0.8, 0.3, 0.1), 0.02}, {255.0, glm::dvec3(1.0, 0.7, 0.3), 0.3}});
+        session.groups[3].color = glm::dvec3(0.8, 0.3, 0.1);
         const Camera camera = camera_looking("front", source->info());
         Budgeted budgeted(with_light ? 24 : 20);
         Renderer& renderer = budgeted.renderer;
