@@ -36,8 +36,8 @@ std::vector<Need> needs_of(const DeviceHas& has);
 std::optional<std::string> why_too_limited(const DeviceHas& has);
 
 /// Whether densities that kernels read exactly are kept in a buffer, read by its address, instead of images; the bits
-/// are the same. `named`: the value of SHVR_ATLAS, "image" or "buffer"; null or empty, if it is not set: images. A buffer
-/// may be faster with llvmpipe of Mesa 23.3 and later, where a load of an image is a call (shaders/MEASURED.md,
+/// are the same. `named`: the value of SHVR_ATLAS, "image" or "buffer"; null or empty, if it is not set: images. A
+/// buffer may be faster with llvmpipe of Mesa 23.3 and later, where a load of an image is a call (shaders/MEASURED.md,
 /// "Mesa 25").
 bool keeps_atlas_in_buffer(const char* named);
 
