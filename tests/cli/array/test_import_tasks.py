@@ -108,7 +108,6 @@ class ImportTasks(SplitTest):
                                         "SHVR_STOP_SIGNAL": str(int(signal.SIGKILL))})
         self.assertEqual(process.wait(), -signal.SIGKILL)
 
-    @unittest.skipUnless(STOP_IN_SAVE.exists(), "not built: stubs/libstop_in_save.so")
     def test_what_a_killed_task_left_is_removed_by_gather_and_by_the_next_task(self):
         arguments = self.import_of(self.write_volume((20, 17, 130)), "project")
         self.tasks(2, *arguments, order=(0,))
