@@ -83,9 +83,12 @@ void export_stl(const std::filesystem::path& path, SurfaceParts& surfaces, const
     if (part.triangles > UINT32_MAX)
         fail(path.string(), ": would hold ", part.triangles, " triangles; expected at most 4294967295: use .ply");
     SurfaceWriter writer(path, HEADER + 4 + TRIANGLE * part.triangles);
-    // A header that began with "solid" would mark a text file.
+    // A header that began with "solid" would mark a text file. Only the facts that change how the file is read fit into
+    // it; of these, a long unit may be cut.
     std::string header = sentence("SHVR surface, group ", part.group);
-    for (const std::string& comment : surfaces.comments) header += ", " + printable(comment);
+    for (const char* const fact : {"SPACE=", "space ", "unit "})
+        for (const std::string& comment : surfaces.comments)
+            if (comment.starts_with(fact)) header += ", " + printable(comment);
     header.resize(HEADER, ' ');
     writer.text(header);
     writer.values(uint32_t(part.triangles));

@@ -77,6 +77,8 @@ private:
     {
         const JsonNode& node = nodes_[number];
         if (node["skin"].exists()) node["skin"].refuse("a mesh without a skeleton: export it in its pose");
+        if (const JsonNode copies = node["extensions"]["EXT_mesh_gpu_instancing"]; copies.exists())
+            copies.refuse_because("states copies of a mesh; expected none: export each as a node of its own");
         const JsonNode& mesh = meshes_.at(node["mesh"]);
         const JsonNode name = mesh["name"].is_text() ? mesh["name"] : node["name"];
         for (const JsonNode& primitive : mesh.required("primitives", "an array").elements()) {
@@ -120,8 +122,10 @@ void check_version(const JsonNode& root)
     const JsonNode version = root.required("asset", "an object")["version"];
     if (!version.is_text() || !version.any_text().starts_with("2.")) version.refuse("\"2.0\"");
     const JsonNode needed = root["extensionsRequired"];
-    if (needed.exists() && !needed.elements().empty())
-        needed.refuse("none: export it without extensions such as compression");
+    if (!needed.exists()) return;
+    for (const JsonNode& extension : needed.elements())  // those of materials do not change shapes
+        if (!extension.is_text() || !extension.any_text().starts_with("KHR_materials_"))
+            extension.refuse("none: export it without extensions such as compression");
 }
 
 }  // namespace

@@ -61,8 +61,8 @@ GlbAccessor GlbAccessors::placed(const JsonNode& reference, uint64_t component_b
     if (accessor["sparse"].exists()) accessor["sparse"].refuse("an accessor that is not sparse");
     const JsonNode& view = views_.at(accessor.required("bufferView", "the number of a buffer view"));
     const JsonNode& buffer = buffers_.at(view.required("buffer", "the number of a buffer"));
-    if (buffer["uri"].exists() || &buffer != &buffers_[0])
-        view["buffer"].refuse("0, and that buffer in the file itself");
+    if (buffer["uri"].exists()) buffer["uri"].refuse("none: export it as one .glb file that holds its buffer");
+    if (&buffer != &buffers_[0]) view["buffer"].refuse("0, and that buffer in the file itself");
     const auto view_begin = uint64_t(view["byteOffset"].whole(0, 0, MAX_OFFSET));
     const auto view_bytes = uint64_t(view.required("byteLength", "a number of bytes").whole(1, MAX_OFFSET));
     if (view_begin + view_bytes > binary_.bytes)

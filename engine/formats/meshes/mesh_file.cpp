@@ -63,6 +63,15 @@ std::string extension_of(const std::filesystem::path& path)
 
 }  // namespace
 
+void add_statements(TriangleMesh& mesh, const MeshStatements& statements)
+{
+    mesh.metres = statements.metres();
+    mesh.positions = statements.positions();
+    mesh.frame = statements.frame();
+    mesh.origin = statements.origin();
+    mesh.directions = statements.directions();
+}
+
 void skip_byte_order_mark(MeshInput& input)
 {
     if (input.peek(BYTE_ORDER_MARK.size()) == BYTE_ORDER_MARK) input.skip(BYTE_ORDER_MARK.size());

@@ -29,6 +29,10 @@ struct TriangleMesh {
     std::vector<MeshPart> parts;        ///< cover all triangles in order; at least one
     std::optional<double> metres;       ///< length of the unit; null if the file does not state it
     std::string positions;              ///< "physical" or "volume" if the file states it as ours do, else empty
+    std::string frame;                  ///< "LPS" or "RAS", along whose axes physical positions run; else empty
+    /// Where the volume lies of which a file of ours was made, in the unit of the points; null if it states none.
+    std::optional<glm::dvec3> origin;
+    std::optional<glm::dmat3> directions;
 };
 
 /// Whether the file begins like a mesh of one of the formats. False for a file that cannot be read.

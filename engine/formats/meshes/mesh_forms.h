@@ -3,6 +3,7 @@
 
 #include "engine/formats/meshes/mesh_file.h"
 #include "engine/formats/meshes/mesh_input.h"
+#include "engine/formats/meshes/mesh_statements.h"
 
 namespace shvr {
 
@@ -12,6 +13,8 @@ TriangleMesh read_ply(MeshInput& input, MeshMemory& memory);
 TriangleMesh read_obj(MeshInput& input, MeshMemory& memory);
 TriangleMesh read_glb(MeshInput& input, MeshMemory& memory);
 
+/// Sets what the comments state: unit, space, frame and place.
+void add_statements(TriangleMesh& mesh, const MeshStatements& statements);
 /// Moves past the mark that some programs put before UTF-8.
 void skip_byte_order_mark(MeshInput& input);
 /// Parses a number of a text; fails, naming the line.

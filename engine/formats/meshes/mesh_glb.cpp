@@ -159,8 +159,9 @@ TriangleMesh read_glb(MeshInput& input, MeshMemory& memory)
     TriangleMesh mesh = GlbFile(input, memory, primitives).read();
     // glTF is in metres; our writer leaves the numbers as they are where the unit is no length.
     const MeshStatements statements = statements_of(json);
+    add_statements(mesh, statements);
+    if (mesh.metres && mesh.origin) *mesh.origin *= *mesh.metres;
     mesh.metres = statements.states_unit() ? (statements.metres() ? std::optional(1.0) : std::nullopt) : 1.0;
-    mesh.positions = statements.positions();
     return mesh;
 }
 

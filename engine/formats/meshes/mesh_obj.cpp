@@ -41,8 +41,7 @@ public:
         }
         if (farthest_ > builder_.points()) refuse_index(farthest_place_, std::to_string(farthest_));
         TriangleMesh mesh = builder_.finish();
-        mesh.metres = statements_.metres();
-        mesh.positions = statements_.positions();
+        add_statements(mesh, statements_);
         return mesh;
     }
 

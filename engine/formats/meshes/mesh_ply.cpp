@@ -39,8 +39,7 @@ public:
         TriangleMesh mesh = builder_.finish();
         if (!colors_.empty())
             for (MeshPart& part : mesh.parts) part.color = color_of(mesh, part);
-        mesh.metres = header_.statements.metres();
-        mesh.positions = header_.statements.positions();
+        add_statements(mesh, header_.statements);
         return mesh;
     }
 

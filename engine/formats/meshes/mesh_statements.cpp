@@ -1,5 +1,10 @@
 #include "engine/formats/meshes/mesh_statements.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include <glm/gtc/type_ptr.hpp>
+
 #include "engine/base/text.h"
 #include "engine/volume/unit.h"
 
@@ -23,6 +28,42 @@ bool take_prefix(std::string_view& text, std::string_view prefix)
     return true;
 }
 
+/// Null unless the text is `count` finite numbers.
+template <size_t count>
+std::optional<std::array<double, count>> finite_numbers(std::string_view text)
+{
+    std::array<double, count> numbers{};
+    for (double& number : numbers) {
+        text = trimmed(text);
+        const size_t end = std::min(text.find(' '), text.size());
+        const std::optional<double> found = number_of(text.substr(0, end));
+        if (!found || !std::isfinite(*found)) return std::nullopt;
+        number = *found;
+        text.remove_prefix(end);
+    }
+    return trimmed(text).empty() ? std::optional(numbers) : std::nullopt;
+}
+
+std::optional<glm::dvec3> origin_of(std::string_view text)
+{
+    const auto found = finite_numbers<3>(text);
+    return found ? std::optional(glm::make_vec3(found->data())) : std::nullopt;
+}
+
+std::optional<glm::dmat3> directions_of(std::string_view text)
+{
+    const auto found = finite_numbers<9>(text);
+    return found ? std::optional(glm::make_mat3(found->data())) : std::nullopt;
+}
+
+/// The axes that a text such as "3D Slicer output. SPACE=LPS" names; empty if none.
+std::string frame_in(std::string_view text)
+{
+    const size_t at = text.find("SPACE=");
+    const std::string_view name = at == std::string_view::npos ? std::string_view() : text.substr(at + 6, 3);
+    return name == "LPS" || name == "RAS" ? std::string(name) : std::string();
+}
+
 }  // namespace
 
 void MeshStatements::take(std::string_view comment)
@@ -35,6 +76,14 @@ void MeshStatements::take(std::string_view comment)
         positions_ = "physical";
     } else if (text == "space volume" || text.starts_with("positions are voxels times spacing")) {
         positions_ = "volume";
+    } else if (text == "frame LPS" || text == "frame RAS") {
+        frame_ = text.substr(6);
+    } else if (take_prefix(text, "origin ")) {
+        origin_ = origin_of(text);
+    } else if (take_prefix(text, "directions ")) {
+        directions_ = directions_of(text);
+    } else if (const std::string frame = frame_in(text); !frame.empty()) {
+        frame_ = frame;
     } else if (take_prefix(text, "group ")) {
         const std::optional<uint8_t> group = group_of(text.substr(0, text.find(' ')));
         text.remove_prefix(std::min(text.find(' '), text.size()));
@@ -44,7 +93,10 @@ void MeshStatements::take(std::string_view comment)
 
 void MeshStatements::take_stl_header(std::string_view header)
 {
-    if (!take_prefix(header, "SHVR surface, ")) return;
+    if (!take_prefix(header, "SHVR surface, ")) {
+        frame_ = frame_in(header);
+        return;
+    }
     const bool may_be_cut = !header.ends_with(' ');
     while (!header.empty()) {
         const size_t comma = header.find(", ");

@@ -14,11 +14,11 @@ namespace {
 /// Checks the number of triangles against the file.
 void check_count(const MeshInput& input, uint64_t count)
 {
-    if (count > MAX_MESH_TRIANGLES) refuse_triangles(input.name(), count);
     const uint64_t room = input.rest() / STL_TRIANGLE_BYTES;
     if (count > room)
         fail(input.name(), ": states ", count, " triangles; expected at most ", room, ", which its ", input.size(),
-             " bytes can hold: copy it again");
+             " bytes can hold: copy it again, or is it no STL file?");
+    if (count > MAX_MESH_TRIANGLES) refuse_triangles(input.name(), count);
     if (count < room)
         fail(input.name(), ": states ", count, " triangles, but its ", input.size(), " bytes can hold ", room,
              "; expected equal numbers: write it again");
@@ -51,7 +51,9 @@ public:
             }
         }
         if (is_open) refuse("", "facet or endsolid");
-        return builder_.finish();
+        TriangleMesh mesh = builder_.finish();
+        mesh.frame = statements_.frame();
+        return mesh;
     }
 
 private:
@@ -65,7 +67,12 @@ private:
     {
         if (const std::string found = next(); found != word) refuse(found, word);
     }
-    void begin_part() { builder_.begin_part(input_.line().value_or("")); }
+    void begin_part()
+    {
+        const std::string_view name = input_.line().value_or("");
+        statements_.take(name);
+        builder_.begin_part(name);
+    }
     void read_facet()
     {
         expect("normal");
@@ -85,6 +92,7 @@ private:
 
     MeshInput& input_;
     MeshBuilder builder_;
+    MeshStatements statements_{};
     PointMerger merger_;
 };
 
@@ -121,8 +129,7 @@ TriangleMesh read_stl_binary(MeshInput& input, MeshMemory& memory)
         builder.add_triangle(corners);
     }
     TriangleMesh mesh = builder.finish();
-    mesh.metres = statements.metres();
-    mesh.positions = statements.positions();
+    add_statements(mesh, statements);
     return mesh;
 }
 

@@ -44,7 +44,8 @@ PlyElement element_in(const MeshInput& input, const std::vector<std::string_view
 {
     const std::optional<int64_t> count = words.size() == 3 ? whole_of(words[2]) : std::nullopt;
     if (!count || *count < 0)
-        fail(input.place(), ": states an element without a name or number; expected one such as element vertex 8");
+        fail(input.place(), ": states an element of ", words.size() == 3 ? in_quotes(words[2]) : "no number",
+             "; expected a name and a number, such as element vertex 8");
     return {std::string(words[1]), uint64_t(*count)};
 }
 

@@ -137,8 +137,9 @@ TEST_CASE("damaged PLY is refused with the face, vertex or line")
         contains(refusal("list uchar int vertex_index", "list float int vertex_index"), "counts a list by \"float\""));
     CHECK(contains(refusal("int vertex_index", "float vertex_index"), "has no list of corners of each face"));
     CHECK(contains(refusal("element face 2", "element strips 2"), "has no element face; expected vertices and faces"));
-    CHECK(
-        contains(refusal("element vertex 6", "element vertex"), "a.ply:5: states an element without a name or number"));
+    CHECK(contains(refusal("element vertex 6", "element vertex"), "a.ply:5: states an element of no number; expected"));
+    CHECK(contains(refusal("element vertex 6", "element vertex 99999999999999999999"),
+                   "states an element of \"99999999999999999999\"; expected a name and a number"));
     CHECK(contains(refusal("end_header", "end of header"), "a.ply:20: has \"end of header\"; expected a line of the"));
     CHECK(contains(refusal("face 2", "face 0"), "holds no triangles"));
 }

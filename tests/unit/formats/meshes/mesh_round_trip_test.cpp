@@ -21,6 +21,7 @@ public:
                  {.group = 7, .name = "vein", .color = {0.0, 0.5, 1.0}, .vertices = 4, .triangles = 4}};
         comments = {"unit " + space.unit, in_words(space, positions)};
         for (const auto& [name, value] : statements_of(space, positions)) comments.push_back(name + (" " + value));
+        if (positions == Positions::physical) comments.push_back("SPACE=" + space.frame);
         if (positions == Positions::physical) origin = space.origin;
         if (const auto micrometres = micrometres_in(space.unit)) metres = 1e-6 * *micrometres;
     }
@@ -41,7 +42,11 @@ public:
     }
 };
 
-const TraceSpace MILLIMETRES{.size = {4, 5, 6}, .unit = "mm", .origin = {100.3, -20.7, 3.14159}, .frame = "LPS"};
+const TraceSpace MILLIMETRES{.size = {4, 5, 6},
+                             .unit = "mm",
+                             .directions = {{0.0, 1.0, 0.0}, {-1.0, 0.0, 0.0}, {0.0, 0.0, 1.0}},
+                             .origin = {100.3, -20.7, 3.14159},
+                             .frame = "LPS"};
 
 TriangleMesh written_and_read(const TemporaryFolder& folder, const char* name, TwoSurfaces& surfaces)
 {
@@ -65,6 +70,21 @@ void check_same(const TriangleMesh& mesh, const TwoSurfaces& surfaces)
     CHECK(mesh.triangles == expected);
 }
 
+/// Checks the place of the volume that the file states.
+void check_place(const TriangleMesh& mesh, Positions positions)
+{
+    const bool is_physical = positions == Positions::physical;
+    CHECK(mesh.positions == (is_physical ? "physical" : "volume"));
+    CHECK(mesh.frame == (is_physical ? "LPS" : ""));
+    REQUIRE(mesh.origin.has_value() == is_physical);
+    REQUIRE(mesh.directions.has_value() == is_physical);
+    if (!is_physical) return;
+    const double unit = 1e-3 / mesh.metres.value();
+    for (int axis = 0; axis < 3; ++axis)
+        CHECK((*mesh.origin)[axis] == doctest::Approx(unit * MILLIMETRES.origin[axis]).epsilon(1e-12));
+    CHECK(*mesh.directions == MILLIMETRES.directions);
+}
+
 }  // namespace
 
 TEST_CASE("PLY and OBJ of SHVR are read back equal")
@@ -81,7 +101,7 @@ TEST_CASE("PLY and OBJ of SHVR are read back equal")
                     CHECK(mesh.points[4 * part + i] == glm::vec3(surfaces.vertex(surfaces.parts[part], i)));
             }
             CHECK(mesh.metres == 1e-3);
-            CHECK(mesh.positions == (positions == Positions::physical ? "physical" : "volume"));
+            check_place(mesh, positions);
         }
         const TriangleMesh ply = read_mesh(folder.path / "a.ply", MESH_MEMORY, {});
         CHECK(ply.parts[0].color == glm::vec3(255, 137, 0) / 255.0f);
@@ -107,7 +127,7 @@ TEST_CASE("binary glTF of SHVR is read back at its origin, in metres")
             }
         }
         CHECK(mesh.metres == 1.0);
-        CHECK(mesh.positions == (positions == Positions::physical ? "physical" : "volume"));
+        check_place(mesh, positions);
     }
 }
 
@@ -130,6 +150,7 @@ TEST_CASE("STL of SHVR is read back equal, with the points that its corners shar
         CHECK(mesh.parts[0].name == "group 3");
         CHECK(mesh.metres == 1e-3);
         CHECK(mesh.positions == (positions == Positions::physical ? "physical" : "volume"));
+        CHECK(mesh.frame == (positions == Positions::physical ? "LPS" : ""));
     }
 }
 

@@ -148,6 +148,22 @@ TEST_CASE("the header of SHVR's STL files states group, unit and space, unless i
     CHECK(read("SHVR surface, group 7, unit mm").metres == 1e-3);
     CHECK(!read("SHVR surface, group 7, unit voxel, positions are").metres);
     CHECK(!read("a surface, group 7, unit mm").metres);
+    const TriangleMesh placed = read("SHVR surface, group 7, SPACE=RAS, space physical, unit mm");
+    CHECK(placed.frame == "RAS");
+    CHECK(placed.metres == 1e-3);
+    CHECK(placed.positions == "physical");
     const std::string start = "SHVR surface, group 7, ";
     CHECK(!read(start + std::string(80 - 2 - 6 - start.size(), 'x') + ", unit m").metres);
+}
+
+TEST_CASE("the frame that 3D Slicer states in STL files is read")
+{
+    const TemporaryFolder folder;
+    for (const char* const frame : {"LPS", "RAS"}) {
+        const std::string title = sentence("3D Slicer output. SPACE=", frame);
+        CHECK(mesh_of(folder, "a.stl", stl_of(tetrahedron(), title)).frame == frame);
+        CHECK(mesh_of(folder, "b.stl", solid(title, tetrahedron())).frame == frame);
+    }
+    CHECK(mesh_of(folder, "a.stl", stl_of(tetrahedron(), "SPACE=LAS")).frame.empty());
+    CHECK(mesh_of(folder, "a.stl", stl_of(tetrahedron(), "SPACE=")).frame.empty());
 }
