@@ -1,7 +1,6 @@
 #include "engine/look/surfaces/mesh_tree.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <glm/gtc/packing.hpp>
@@ -9,6 +8,8 @@
 #include "engine/base/error.h"
 #include "engine/base/finite.h"
 #include "engine/look/surfaces/box_tree.h"
+#include "engine/look/surfaces/corner_normals.h"
+#include "engine/look/surfaces/mesh_limits.h"
 #include "engine/look/surfaces/surface_tree.h"
 #include "engine/volume/grid.h"
 
@@ -28,75 +29,37 @@ uint32_t packed_normal(const glm::dvec3& normal)
     return glm::packSnorm2x16(glm::vec2(at));
 }
 
-/// The angle between two sides of a triangle; exact near 0 and 180 degrees, too.
-double angle_between(const glm::dvec3& p, const glm::dvec3& q)
+/// Adds the triangles of a mesh that have an area.
+void add(const MeshShape& mesh, double reference_length, std::vector<gpu::Triangle>& list)
 {
-    return std::atan2(glm::length(glm::cross(p, q)), glm::dot(p, q));
-}
-
-struct Corners {
-    std::array<glm::dvec3, 3> at;
-    glm::dvec3 normal() const { return glm::cross(at[1] - at[0], at[2] - at[0]); }
-};
-
-Corners corners_of(const MeshShape& mesh, const glm::uvec3& triangle)
-{
-    return {{mesh.points[triangle.x], mesh.points[triangle.y], mesh.points[triangle.z]}};
-}
-
-std::vector<glm::dvec3> normals_of(const MeshShape& mesh)
-{
-    std::vector<glm::dvec3> normals(mesh.points.size(), glm::dvec3(0.0));
-    for (const glm::uvec3& triangle : mesh.triangles) {
-        const Corners corners = corners_of(mesh, triangle);
-        const glm::dvec3 normal = corners.normal();
-        const double length = glm::length(normal);
-        if (!(length > 0.0)) continue;
-        for (int i = 0; i < 3; ++i) {
-            const glm::dvec3 &here = corners.at[i], &next = corners.at[(i + 1) % 3], &last = corners.at[(i + 2) % 3];
-            normals[triangle[i]] += normal / length * angle_between(next - here, last - here);
-        }
+    const CornerNormals normals(mesh);
+    size_t color = 0;
+    for (size_t i = 0; i < mesh.triangles.size(); ++i) {
+        while (color + 1 < mesh.colors.size() && i >= mesh.color_ends[color]) ++color;
+        if (!normals.has_area(i)) continue;
+        const glm::uvec3& corners = mesh.triangles[i];
+        list.push_back({.a = glm::vec3(mesh.points[corners.x] / reference_length),
+                        .number = uint32_t(list.size()),
+                        .b = glm::vec3(mesh.points[corners.y] / reference_length),
+                        .normal_a = packed_normal(normals.at(i, 0)),
+                        .c = glm::vec3(mesh.points[corners.z] / reference_length),
+                        .normal_b = packed_normal(normals.at(i, 1)),
+                        .color = glm::vec3(mesh.colors[color]),
+                        .normal_c = packed_normal(normals.at(i, 2))});
     }
-    return normals;
 }
 
-void check_places(const MeshShape& mesh, double reference_length)
+}  // namespace
+
+void check_places(const MeshShape& mesh, const VolumeInfo& volume)
 {
-    const double most = MAX_COORDINATE * reference_length;
+    const double most = MAX_COORDINATE * reference_length_of(volume);
     for (const glm::dvec3& point : mesh.points)
         if (!is_finite(point) || glm::any(glm::greaterThan(glm::abs(point), glm::dvec3(most))))
             fail(mesh.name, ": a corner is at (", point.x, ", ", point.y, ", ", point.z,
                  ") in the volume's lengths; expected at most ", most,
                  " from its corner along each axis, so unit or place of the mesh are others");
 }
-
-/// Adds the triangles of a mesh that have an area.
-void add(const MeshShape& mesh, double reference_length, std::vector<gpu::Triangle>& list)
-{
-    const std::vector<glm::dvec3> normals = normals_of(mesh);
-    size_t color = 0;
-    for (size_t i = 0; i < mesh.triangles.size(); ++i) {
-        while (color + 1 < mesh.colors.size() && i >= mesh.color_ends[color]) ++color;
-        const glm::uvec3& corners = mesh.triangles[i];
-        const glm::dvec3 own = corners_of(mesh, corners).normal();
-        if (!(glm::length(own) > 0.0)) continue;
-        const auto normal = [&](int corner) {
-            const glm::dvec3& mean = normals[corners[corner]];
-            const double length = glm::length(mean);
-            return packed_normal(length > 1e-9 ? mean / length : glm::normalize(own));
-        };
-        list.push_back({.a = glm::vec3(mesh.points[corners.x] / reference_length),
-                        .number = uint32_t(list.size()),
-                        .b = glm::vec3(mesh.points[corners.y] / reference_length),
-                        .normal_a = normal(0),
-                        .c = glm::vec3(mesh.points[corners.z] / reference_length),
-                        .normal_b = normal(1),
-                        .color = glm::vec3(mesh.colors[color]),
-                        .normal_c = normal(2)});
-    }
-}
-
-}  // namespace
 
 MeshTree mesh_tree(std::span<const MeshShape> meshes, const VolumeInfo& volume)
 {
@@ -110,7 +73,7 @@ MeshTree mesh_tree(std::span<const MeshShape> meshes, const VolumeInfo& volume)
     std::vector<gpu::Triangle> all;
     all.reserve(count);
     for (const MeshShape& mesh : meshes) {
-        check_places(mesh, reference_length);
+        check_places(mesh, volume);
         add(mesh, reference_length, all);
     }
     std::vector<BoxedSurface> items;

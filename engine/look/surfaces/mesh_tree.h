@@ -31,9 +31,9 @@ struct MeshTree {
     std::vector<gpu::Triangle> list;  ///< in the order of the leaves
 };
 
-/// Normals of corners are means of those of the triangles around a point, weighted by the angles there (Thuermer and
-/// Wuethrich 1998); triangles without area are left out. Fails if there are more than MAX_TRIANGLES_SHOWN, or a corner
-/// is further away than surfaces may be (surface_tree.h). Takes 150 bytes a triangle while it works.
+/// Triangles without area are left out. Normals: corner_normals.h. Memory: mesh_limits.h.
+/// Fails if there are more than MAX_TRIANGLES_SHOWN,
+/// or a corner is further away than surfaces may be (surface_tree.h).
 MeshTree mesh_tree(std::span<const MeshShape> meshes, const VolumeInfo& volume);
 
 }  // namespace shvr
