@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include <nlohmann/json.hpp>
 
@@ -194,6 +195,41 @@ std::string list_change(const json& was, const json& is)
     return "changed the measurements";
 }
 
+std::string mesh_name(const json& mesh)
+{
+    return "the mesh " + std::filesystem::path(text_at(mesh, "file", "")).filename().string();
+}
+
+/// "showed the mesh vein.stl"
+std::string mesh_change(const json& was, const json& is)
+{
+    const auto without = [](const json& all, const json& others) {
+        json left = json::array();
+        for (const json& mesh : all)
+            if (std::ranges::none_of(others, [&](const json& each) { return each["file"] == mesh["file"]; }))
+                left.push_back(mesh);
+        return left;
+    };
+    const json list = json::array(), before = was.is_array() ? was : list, after = is.is_array() ? is : list;
+    const json added = without(after, before), gone = without(before, after);
+    if (added.size() == 1 && gone.empty()) return "showed " + mesh_name(added[0]);
+    if (gone.size() == 1 && added.empty()) return "removed " + mesh_name(gone[0]);
+    if (added.size() > 1 && gone.empty()) return sentence("showed ", added.size(), " meshes");
+    if (gone.size() > 1 && added.empty())
+        return after.empty() ? "removed all meshes" : sentence("removed ", gone.size(), " meshes");
+    std::vector<std::string> told;
+    for (size_t i = 0; i < before.size() && before.size() == after.size() && added.empty(); ++i) {
+        if (before[i] == after[i]) continue;
+        if (before[i]["file"] != after[i]["file"]) return "changed the meshes";
+        const bool is_shown = after[i].value("shown", true);
+        if (before[i].value("shown", true) != is_shown)
+            told.push_back((is_shown ? "showed " : "hid ") + mesh_name(after[i]));
+        else
+            told.push_back("changed the colour of " + mesh_name(after[i]));
+    }
+    return told.size() == 1 ? told[0] : "changed the meshes";
+}
+
 /// Describes the difference of one section.
 std::string section_change(const std::string& name, const std::string& before, const std::string& after)
 {
@@ -201,6 +237,7 @@ std::string section_change(const std::string& name, const std::string& before, c
     const std::string as_whole = sentence("changed ", section.words);
     const auto parsed = [](const std::string& text) { return text.empty() ? json() : json::parse(text); };
     if (name == "measurements") return list_change(parsed(before), parsed(after));
+    if (name == "meshes") return mesh_change(parsed(before), parsed(after));
     if (before.empty() || after.empty() || name == "transfer_function") return as_whole;
     const json was = parsed(before), is = parsed(after);
     std::vector<std::string> told;

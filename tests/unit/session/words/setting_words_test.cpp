@@ -83,6 +83,23 @@ TEST_CASE("moved planes and measurements are told, not the numbers of their corn
                    named) == "measured an angle");
 }
 
+TEST_CASE("meshes are told by name")
+{
+    const char* const one = R"({"meshes":[{"file":"a/vein.stl"}]})";
+    const char* const two = R"({"meshes":[{"file":"a/vein.stl"},{"file":"/b/stem.ply"}]})";
+    CHECK(words_of(one) == "showed the mesh vein.stl");
+    CHECK(words_of(two, one) == "showed the mesh stem.ply");
+    CHECK(words_of(two) == "showed 2 meshes");
+    CHECK(words_of(R"({"meshes":[{"file":"/b/stem.ply"}]})", two) == "removed the mesh vein.stl");
+    CHECK(words_of(R"({"meshes":null})", one) == "removed the mesh vein.stl");
+    CHECK(words_of(R"({"meshes":null})", two) == "removed all meshes");
+    CHECK(words_of(R"({"meshes":[{"file":"a/vein.stl","shown":false}]})", one) == "hid the mesh vein.stl");
+    CHECK(words_of(one, R"({"meshes":[{"file":"a/vein.stl","shown":false}]})") == "showed the mesh vein.stl");
+    CHECK(words_of(R"({"meshes":[{"file":"a/vein.stl","color":"#ff0000"}]})", one) ==
+          "changed the colour of the mesh vein.stl");
+    CHECK(words_of(R"({"meshes":[{"file":"stem.stl"}]})", one) == "changed the meshes");
+}
+
 TEST_CASE("a changed curve of ambient occlusion is told as one, not as the numbers of its points")
 {
     const char* const two = R"({"light":{"occlusion":{"mapping":[{"arrives":0,"seen":0},{"arrives":1,"seen":1}]}}})";
