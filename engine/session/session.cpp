@@ -317,12 +317,4 @@ fs::path mesh_path(const Session& session, const MeshLook& mesh)
     return (session_folder(session) / mesh.file).lexically_normal();
 }
 
-std::string mesh_file_name(const Session& session, const fs::path& path)
-{
-    const fs::path whole = fs::absolute(path).lexically_normal();
-    const fs::path relative = whole.lexically_relative(session_folder(session));
-    const bool is_inside = !relative.empty() && *relative.begin() != "..";
-    return (is_inside ? relative : whole).generic_string();
-}
-
 }  // namespace shvr

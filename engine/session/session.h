@@ -226,7 +226,7 @@ UnmeasuredSession open_unmeasured_session(const std::filesystem::path& path,
 /// The folder of the session's file; for a volume without a session, that of the volume. Absolute.
 std::filesystem::path session_folder(const Session& session);
 std::filesystem::path mesh_path(const Session& session, const MeshLook& mesh);
-/// Returns how a session names a mesh's file: relative to its folder if the file is in it, else absolute.
+/// Returns how a session names a mesh's file: relative if it is in its folder or project, else absolute.
 std::string mesh_file_name(const Session& session, const std::filesystem::path& path);
 
 /// Returns the session file to open for `path`: `path` itself, or the session file of a project, which may be missing;

@@ -180,4 +180,9 @@ std::string to_text(const Session& session, const std::filesystem::path& folder)
     }
 }
 
+std::string mesh_file_name(const Session& session, const std::filesystem::path& path)
+{
+    return path_text(std::filesystem::absolute(path).lexically_normal(), session_folder(session));
+}
+
 }  // namespace shvr
