@@ -74,14 +74,20 @@ json& member_of(json& container, const std::string& key, const std::string& cont
     size_t index = 0;
     const auto result = std::from_chars(key.data(), key.data() + key.size(), index);
     if (result.ec != std::errc() || result.ptr != key.data() + key.size() || index >= container.size())
-        refuse_setting(setting, container_key, " has no element ", key, "; expected a number below ", container.size());
+        refuse_setting(setting, container_key, " has no element ", key, "; expected ",
+                       container.empty() ? "" : sentence("a number below ", container.size(), ", or "),
+                       "the whole list, as in --set '", container_key, "=[...]'");
     return container[index];
 }
 
-/// Returns a copy of the default if it is an array ("render.size"), so that single elements of it can be set.
-json missing_container(const json* fallback)
+/// Returns a copy of the default if it is an array ("render.size"), so that single elements of it can be set, and an
+/// empty list for keys that are lists ("meshes").
+json missing_container(const std::string& key, const json* fallback)
 {
-    return fallback && fallback->is_array() ? *fallback : json::object();
+    if (fallback && fallback->is_array()) return *fallback;
+    static const std::vector<SessionKey> keys = session_keys();
+    const auto known = std::ranges::find(keys, key, &SessionKey::name);
+    return known != keys.end() && known->allowed.starts_with("array of at most") ? json::array() : json::object();
 }
 
 /// Erases the keys that a quality sets: the quality overrides keys that were set before it.
@@ -104,7 +110,7 @@ void apply_settings(JsonDocument& session, const std::vector<std::string>& setti
         const json* fallback = &defaults;
         std::string place_key;
         for (const std::string& key : parsed.keys) {
-            if (place->is_null()) *place = missing_container(fallback);
+            if (place->is_null()) *place = missing_container(place_key, fallback);
             place = &member_of(*place, key, place_key, setting);
             place_key += place_key.empty() ? key : "." + key;
             fallback = fallback && fallback->is_object() && fallback->contains(key) ? &(*fallback)[key] : nullptr;
