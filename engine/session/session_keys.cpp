@@ -535,7 +535,7 @@ void fields(Fields& f, MeshLook& mesh)
 {
     f.text("file", mesh.file,
            {.meaning = "file of the mesh: `.stl`, `.ply`, `.obj` or `.glb`, in the volume's physical space and unit "
-                       "unless the file states others",
+                       "unless the file states others; LPS and RAS are converted",
             .allowed = "path, relative to the session's folder",
             .standard = "required",
             .is_required = true});
@@ -549,7 +549,7 @@ namespace {
 
 const About MESHES{.meaning =
                        "surfaces of files, such as those that other programs or `shvr export --surface` wrote; "
-                       "cutting planes do not affect them",
+                       "slices do not show them, and cutting planes do not affect them",
                    .allowed = "array of at most 64",
                    .standard = "none"};
 static_assert(MAX_SESSION_MESHES == 64);

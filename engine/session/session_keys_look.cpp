@@ -236,7 +236,7 @@ void fields(Fields& f, ViewSettings& view)
     f.section("slices", view.slices);
     f.number("overview_zoom", view.overview_zoom, above_zero(1e-3, 1e3), {"zoom of the three maps"});
     f.flag("volume", view.volume, {"false: draws no voxels, except in slices"});
-    f.flag("meshes", view.meshes, {"false: draws no nodes, internodes or surfaces, and no ball of the probe"});
+    f.flag("meshes", view.meshes, {"false: draws no nodes, internodes, surfaces or meshes, and no ball of the probe"});
     f.flag("cut_box", view.cut_box, {"true: draws the edges of the box that the cutting planes leave"});
     std::optional<int64_t> solo = view.solo;
     f.any_whole(

@@ -135,8 +135,8 @@ std::string special_sentence(const Session& was, const Session& is)
     if (was.view.volume != is.view.volume)
         return is.view.volume ? "The volume is drawn" : "The volume is not drawn, except in slices";
     if (was.view.meshes != is.view.meshes)
-        return is.view.meshes ? "Nodes, internodes and the probe's ball are drawn"
-                              : "Nodes, internodes and the probe's ball are not drawn";
+        return is.view.meshes ? "Nodes, internodes, meshes and the probe's ball are drawn"
+                              : "Nodes, internodes, meshes and the probe's ball are not drawn";
     if (was.view.cut_box != is.view.cut_box)
         return is.view.cut_box ? "The clip box is drawn: drag its handles to cut"
                                : "The clip box is not drawn; it still cuts";
