@@ -108,8 +108,8 @@ MAY_INCLUDE = {
     "engine/workbench/desk": "engine/base engine/session engine/session/looks engine/jobs engine/workbench/touch engine/workbench/models "
     "engine/workbench/actions engine/workbench/lists engine/workbench/sight engine/workbench/bindings "
     "engine/workbench/document",
-    "engine/workbench/services": "engine/base engine/remote engine/look engine/movie engine/annotation/operations engine/annotation/work engine/formats/meshes "
-    "engine/projects engine/session engine/session/meshes engine/session/looks engine/session/words engine/tasks engine/live "
+    "engine/workbench/services": "engine/base engine/remote engine/look engine/movie engine/annotation/operations engine/annotation/work "
+    "engine/session engine/session/meshes engine/session/looks engine/session/words engine/tasks engine/live "
     "engine/workbench/models engine/workbench/actions engine/workbench/lists engine/workbench/sight engine/workbench/edits "
     "engine/workbench/words engine/workbench/document engine/workbench/desk",
     "engine/workbench": "engine/base engine/workbench/actions engine/workbench/lists engine/workbench/desk "

@@ -7,7 +7,6 @@
 #include "engine/base/image_file.h"
 #include "engine/base/text.h"
 #include "engine/live/previewer.h"
-#include "engine/projects/import_memory.h"
 #include "engine/session/annotation_files.h"
 #include "engine/session/kept_settings.h"
 #include "engine/session/lasting_settings.h"
@@ -290,12 +289,18 @@ void take_settings(Session& session, const Work& left, const std::vector<std::st
 void show_meshes(Opened& opened, const std::string& path, const Common& common, LongWork& work)
 {
     if (opened.session.meshes.empty()) return;
-    ReadMeshes read = read_meshes(opened.session, opened.source->info(), uint64_t(import_budget(0)),
+    ReadMeshes read = read_meshes(opened.session, opened.source->info(), opened.renderer->host_budget(),
                                   work.begin("reading meshes of " + path));
-    if (!read.failures.empty() && common.allows_incomplete == false)
-        fail(read.failures.front(), "; --allow-incomplete draws the picture without it");
-    warn(read.failures, common);
-    opened.warnings.insert(opened.warnings.end(), read.failures.begin(), read.failures.end());
+    if (!read.failures.empty() && common.allows_incomplete == false) {
+        std::string told;
+        for (const std::string& failure : read.failures) told += failure + "; ";
+        fail(told, "--allow-incomplete draws the picture without ", read.failures.size() == 1 ? "it" : "them");
+    }
+    warn_of_losses(read.failures);
+    warn(read.warnings, common);
+    opened.lacks_meshes = !read.failures.empty();
+    for (const auto* const told : {&read.failures, &read.warnings})
+        opened.warnings.insert(opened.warnings.end(), told->begin(), told->end());
     opened.renderer->scene().show_meshes(std::move(read.tree));
 }
 

@@ -94,7 +94,11 @@ struct Opened {
     std::shared_ptr<const Gaps> gaps;  ///< unreadable parts found so far; bricks are read while drawing
     std::string gaps_told{};           ///< already printed by `warn_of_gaps`
 
+    bool lacks_meshes = false;  ///< a mesh of the session cannot be shown
+
     bool is_whole() const { return gaps->empty(); }
+    /// Whether pictures can show all that the session states.
+    bool is_complete() const { return is_whole() && !lacks_meshes; }
     int64_t voxels_not_read() const { return gaps->voxels(); }
 };
 /// Before reading voxels, refuses volumes that exceed the budgets.

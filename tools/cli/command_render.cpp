@@ -109,7 +109,7 @@ Json report_of(Opened& opened, const Picture& picture, const std::optional<Ranks
     const glm::uvec2 size = opened.session.render.size;
     Json report{{"output", options.output},
                 {"size", {size.x, size.y}},
-                {"complete", picture.complete && opened.is_whole() && (!together || together->is_whole)},
+                {"complete", picture.complete && opened.is_complete() && (!together || together->is_whole)},
                 {"voxels_not_read", opened.voxels_not_read()},
                 {"detail", detail_of(*opened.renderer, opened.session.render)},
                 {"device", opened.renderer->device().traits().name},

@@ -12,10 +12,20 @@ namespace shvr {
 
 struct ReadMeshes {
     MeshTree tree;                      ///< triangles of the meshes that are shown and could be read
-    std::vector<std::string> failures;  ///< one sentence for each that could not be read
+    std::vector<std::string> failures;  ///< one sentence for each that cannot be shown
+    std::vector<std::string> warnings;  ///< about those in `tree`: they lie outside the volume
 };
 /// Reads the meshes that are shown. Positions are those of the volume's physical space, in its unit, unless a file
-/// states that they start at the volume's corner, or another unit. `memory`: bytes that it may take.
+/// states that they start at the volume's corner, or another unit or frame. `memory`: bytes that all of them may take
+/// together; a mesh that exceeds what those before it leave is not shown.
 ReadMeshes read_meshes(const Session& session, const VolumeInfo& volume, uint64_t memory, const Progress& progress);
+
+struct MeshCheck {
+    size_t triangles = 0;
+    std::string warning;  ///< as in ReadMeshes; empty if there is none
+};
+/// Reads a mesh to its end, and fails where read_meshes() would not show it.
+MeshCheck check_mesh(const std::filesystem::path& path, const VolumeInfo& volume, uint64_t memory,
+                     const Progress& progress);
 
 }  // namespace shvr

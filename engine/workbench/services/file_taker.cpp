@@ -8,12 +8,11 @@
 #include "engine/base/atomic_file.h"
 #include "engine/base/file.h"
 #include "engine/base/json.h"
-#include "engine/formats/meshes/mesh_file.h"
-#include "engine/projects/import_memory.h"
 #include "engine/remote/address.h"
 #include "engine/session/label_looks.h"
 #include "engine/session/lasting_settings.h"
 #include "engine/session/looks/named_look.h"
+#include "engine/session/meshes/session_meshes.h"
 #include "engine/session/session_patch.h"
 #include "engine/workbench/edits/edit.h"
 #include "engine/workbench/words/load_words.h"
@@ -234,6 +233,7 @@ struct FileTaker::ReadFile {
     std::string text{};          ///< contents of a transfer function
     size_t triangles = 0;        ///< number of a mesh's triangles
     bool is_mesh = false;
+    std::string mesh_warning{};  ///< empty if there is none
     std::shared_ptr<const shvr::Document> found{};
     LoadNotes notes{};
     Groups groups{}, looks{};  ///< the document's groups, without and with the names and colours that a mask adds
@@ -353,14 +353,17 @@ void FileTaker::read_transfer_function(const std::filesystem::path& path, Step s
     start_reading("reading " + short_name(path), path, step, reading);
 }
 
-/// Reads a mesh to the end, so that a broken one is refused before it is in the session.
+/// Reads a mesh to the end, so that one that cannot be drawn is refused before it is in the session.
 void FileTaker::read_mesh_file(const std::filesystem::path& path, Step step)
 {
-    const auto reading = [this, path, step, opening = desk_.openings](ProgressReporter& reporter) {
-        const size_t triangles =
-            read_mesh(path, uint64_t(import_budget(0)), reporter.begin("reading " + short_name(path))).triangles.size();
-        const auto read = std::make_shared<ReadFile>(
-            ReadFile{.path = path, .opening = opening, .triangles = triangles, .is_mesh = true});
+    const auto reading = [this, path, step, volume = document_->volume(), memory = renderer_.host_budget(),
+                          opening = desk_.openings](ProgressReporter& reporter) {
+        const MeshCheck check = check_mesh(path, volume, memory, reporter.begin("reading " + short_name(path)));
+        const auto read = std::make_shared<ReadFile>(ReadFile{.path = path,
+                                                              .opening = opening,
+                                                              .triangles = check.triangles,
+                                                              .is_mesh = true,
+                                                              .mesh_warning = check.warning});
         return Jobs::Completion([this, read, step] { go_on_with(read, step); });
     };
     start_reading("reading " + short_name(path), path, step, reading);
@@ -421,6 +424,7 @@ void FileTaker::show_preview(std::shared_ptr<const ReadFile> read)
     } else if (read->is_mesh) {
         preview.is_mesh = true;
         preview.changes = sentence("Its ", read->triangles, " triangles would be shown with the scan.");
+        if (!read->mesh_warning.empty()) preview.notes.push_back(read->mesh_warning);
     } else {
         preview.changes = is_look(read->text, read->path.string())
                               ? "Names and colours of groups, the light and the transfer function would be replaced."

@@ -58,6 +58,106 @@ class Meshes(CliTest):
         self.assertEqual(self.picture(self.bare, {"file": "physical.glb", "shown": False}), blank)
         self.assertEqual(self.picture(self.bare, {"file": "physical.glb"}, options=["--set", "view.meshes=false"]), blank)
 
+    def test_a_mesh_of_another_frame_is_turned_into_the_frame_of_the_scan(self):
+        blank = self.picture(self.bare)
+        # The same place, stated in RAS.
+        right = (self.folder / "scan.nrrd").read_bytes().replace(b"left-posterior-superior", b"right-anterior-superior")
+        right = right.replace(b"(0,0.5,0) (-1,0,0) (0,0,2)", b"(0,-0.5,0) (1,0,0) (0,0,2)").replace(b"(100,20,", b"(-100,-20,")
+        (self.folder / "right.nrrd").write_bytes(right)
+        groups = {"9": {"name": "vein", "color": "#ff8000"}}
+        turned = self.write_session("turned.json", groups=groups, **self.look | {"volume": {"path": "right.nrrd"}})
+        turned_bare = self.write_session("turned_bare.json", annotation={}, **self.look | {"volume": {"path": "right.nrrd"}})
+        expected = None
+        for of, into in ((self.session, turned_bare), (turned, self.bare), (turned, turned_bare)):
+            for form in ("stl", "ply", "obj", "glb"):
+                with self.subTest(of=of.name, form=form):
+                    file = self.folder / f"a.{form}"
+                    self.check("export", of, "--surface", f"9:{file}", "--smooth", "0")
+                    seen = changed(blank, self.picture(into, {"file": file.name}))
+                    expected = expected or changed(blank, self.picture(self.bare, {"file": self.of_session()}))
+                    self.assertEqual(seen, expected)
+        # As 3D Slicer states it.
+        stl = (self.folder / self.of_session()).read_bytes()
+        (self.folder / "slicer.stl").write_bytes(b"3D Slicer output. SPACE=LPS".ljust(80) + stl[80:])
+        self.assertEqual(changed(blank, self.picture(turned_bare, {"file": "slicer.stl"})), expected)
+
+    def of_session(self):
+        self.check("export", self.session, "--surface", f"9:{self.folder / 'own.stl'}", "--smooth", "0")
+        return "own.stl"
+
+    def test_stl_states_the_frame(self):
+        path = self.folder / "a.stl"
+        self.check("export", self.session, "--surface", f"9:{path}")
+        self.assertEqual(path.read_bytes()[:80].rstrip(), b"SHVR surface, group 9, SPACE=LPS, space physical, unit mm")
+        self.check("export", self.session, "--surface", f"9:{path}", "--space", "volume")
+        self.assertEqual(path.read_bytes()[:80].rstrip(), b"SHVR surface, group 9, space volume, unit mm")
+
+    def stl_at(self, name, corners, count=1):
+        facet = struct.pack("<3f", 0, 0, 0) + b"".join(struct.pack("<3f", *corner) for corner in corners) + bytes(2)
+        (self.folder / name).write_bytes(bytes(80) + struct.pack("<I", count) + count * facet)
+        return {"file": name}
+
+    def test_meshes_that_cannot_be_shown_leave_the_others_in_the_picture(self):
+        good = {"file": self.of_session()}
+        alone = self.picture(self.bare, good)
+        far = self.stl_at("far.stl", ((1e30, 0, 0), (0, 1e30, 0), (0, 0, 1)))
+        broken = self.stl_at("broken.stl", ((0, 0, 0), (0, 1, 0), (0, 0, 1)))
+        (self.folder / "broken.stl").write_bytes((self.folder / "broken.stl").read_bytes()[:-1])
+        meshes = [{"file": "none.stl"}, far, good, broken]
+        names = ["none.stl", "far.stl", "broken.stl"]
+        seen = self.picture(self.bare, *meshes, options=["--allow-incomplete"], warnings=names)
+        self.assertEqual(seen, alone)
+        setting = ["--set", "meshes=" + json.dumps(meshes)]
+        output = self.folder / "b.pfm"
+        self.check_refused("render", self.bare, "-o", output, *setting, says=names)
+        # JSON and --quiet report losses, too.
+        render = ["render", self.bare, "-o", output, "--camera", FLAT, "--allow-incomplete", "--quiet"]
+        self.assertIs(self.check_json(*render, *setting)["complete"], False)
+        told = self.check(*render, *setting).stderr
+        for name in names:
+            self.assertIn(name, told)
+        self.assertIs(self.check_json(*render, "--set", "meshes=" + json.dumps([good]))["complete"], True)
+
+    def test_a_mesh_outside_the_scan_is_told_with_both_boxes(self):
+        blank = self.picture(self.bare)
+        mesh = self.stl_at("um.stl", ((9000, 20, 0), (9010, 20, 0), (9000, 20, 7.5)))
+        seen = self.picture(self.bare, mesh, warnings=["um.stl: lies outside the scan: its box is x 9000 to 9010, y 20 to 20, "
+                            "z 0 to 7.5, that of the scan x 95.5 to 100.5, y 19.75 to 25.75, z -31 to -7 mm"])
+        self.assertEqual(seen, blank)
+        self.picture(self.bare, self.stl_at("in.stl", ((9000, 20, 0), (90, 20, 0), (9000, 20, 7.5))))
+
+    def test_meshes_share_one_budget_of_memory(self):
+        corners = ((98, 22, -20), (99, 22, -20), (98, 22, -10))
+        one, two = (self.stl_at(name, corners, 150000) for name in ("one.stl", "two.stl"))
+        options = ["--budget-host", "64"]
+        self.picture(self.bare, one, options=options)
+        self.check_refused("render", self.bare, "-o", self.folder / "b.png", *options, "--set",
+                           "meshes=" + json.dumps([one, two]), says=["two.stl: takes", "which the meshes before it leave"])
+
+    def test_a_mesh_in_a_project_moves_with_it(self):
+        project = self.folder / "project"
+        self.check("import", self.folder / "scan.nrrd", project)
+        inside = project / "inside.stl"
+        inside.write_bytes((self.folder / self.of_session()).read_bytes())
+        self.check("annotate", project, "--script",
+                   self.write_script("load.jsonl", [{"op": "load", "path": str(inside)}, {"op": "save"}]))
+        told = ["no transfer function given"]
+        seen = self.picture(project, warnings=told)
+        project.rename(self.folder / "moved")
+        self.assertEqual(self.picture(self.folder / "moved", warnings=told), seen)
+
+    def test_a_mesh_that_cannot_be_drawn_is_no_step_of_a_script(self):
+        blank = self.picture(self.bare)
+        self.stl_at("far.stl", ((1e30, 0, 0), (0, 1e30, 0), (0, 0, 1)))
+        script = self.write_script("far.jsonl", [{"op": "load", "path": str(self.folder / "far.stl")}])
+        told = self.check_refused("annotate", self.bare, "--script", script, says=["far.stl", "1e+30"])
+        self.assertEqual(self.picture(self.bare), blank)
+
+    def test_an_element_of_a_list_that_is_not_there_is_refused_with_what_to_write(self):
+        for setting in ("meshes.0.file=a.stl", "meshes.file=a.stl"):
+            self.check_refused("render", self.bare, "-o", self.folder / "b.png", "--set", setting, status=2,
+                               says=["expected the whole list, as in --set 'meshes=[...]'"])
+
     def test_a_mesh_in_metres_has_the_size_that_it_states(self):
         # The triangle covers the whole of the volume from the front, in metres.
         blank = self.picture(self.bare)

@@ -61,7 +61,7 @@ void draw_band(const SplitJob& job, Opened& opened, const Camera& camera, const 
                    .lower = range.lower,
                    .upper = range.upper,
                    .device = traits.name + ", " + traits.driver,
-                   .is_complete = picture.complete && opened.is_whole(),
+                   .is_complete = picture.complete && opened.is_complete(),
                    .warnings = picture.warnings,
                    .texts = options.texts});
 }

@@ -131,7 +131,7 @@ Json report_of(Opened& opened, const Drawn& drawn, int rank)
             {"device", traits.name + ", " + traits.driver},
             {"rows", drawn.rows},
             {"strips", drawn.strips},
-            {"complete", drawn.picture.complete},
+            {"complete", drawn.picture.complete && !opened.lacks_meshes},
             {"voxels_not_read", opened.voxels_not_read()},
             {"passes", passes},
             {"counters", counters_of(drawn.picture.passes)},

@@ -230,7 +230,7 @@ void print_movie(const MovieRequest& request, const Plan& plan, const Opened& op
            {"fps", plan.frames_per_second},
            {"turntable_degrees", plan.degrees},
            {"views", views},
-           {"complete", is_complete && opened.is_whole()},
+           {"complete", is_complete && opened.is_complete()},
            {"voxels_not_read", opened.voxels_not_read()},
            {"device", opened.renderer->device().traits().name},
            {"bytes", bytes_of(*opened.renderer)},

@@ -90,7 +90,7 @@ Profile measure_frames(const ProfileCommandOptions& options, Opened& opened, Lon
     }
     profile.bytes = bytes_of(renderer);
     warn_of_gaps(opened, options.input, options.common);
-    profile.complete = profile.complete && opened.is_whole();
+    profile.complete = profile.complete && opened.is_complete();
     profile.voxels_not_read = opened.voxels_not_read();
     profile.warnings.insert(profile.warnings.begin(), opened.warnings.begin(), opened.warnings.end());
     profile.device_budget = renderer.memory().device_budget();

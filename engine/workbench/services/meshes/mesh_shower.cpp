@@ -1,6 +1,5 @@
 #include "engine/workbench/services/meshes/mesh_shower.h"
 
-#include "engine/projects/import_memory.h"
 #include "engine/session/meshes/session_meshes.h"
 
 namespace shvr::ui {
@@ -21,13 +20,14 @@ void MeshShower::begin_reading()
 {
     const auto session = std::make_shared<const Session>(document_->session);
     read_ = session;
-    const auto reading = [this, session, volume = document_->volume(),
-                          scene = scene_](ProgressReporter& reporter) -> Jobs::Completion {
-        const auto read = std::make_shared<ReadMeshes>(
-            read_meshes(*session, volume, uint64_t(import_budget(0)), reporter.begin("reading meshes")));
+    const auto reading = [this, session, volume = document_->volume(), scene = scene_,
+                          memory = renderer_.host_budget()](ProgressReporter& reporter) -> Jobs::Completion {
+        const auto read =
+            std::make_shared<ReadMeshes>(read_meshes(*session, volume, memory, reporter.begin("reading meshes")));
         return [this, read, scene] {
             if (!document_ || renderer_.scene().number() != scene) return;
             for (const std::string& failure : read->failures) say(failure, Weight::error);
+            for (const std::string& warning : read->warnings) say(warning, Weight::warning);
             try {
                 renderer_.scene().show_meshes(std::move(read->tree));
             } catch (const gpu::MemoryError& error) {
