@@ -41,6 +41,12 @@ CornerNormals::CornerNormals(const MeshShape& mesh)
             entries_[--begins_[mesh.triangles[t][i]]] = {uint32_t(t), float(angle)};
         }
     }
+    for (uint32_t point = 0; point < mesh.points.size(); ++point) {
+        if (begins_[point + 1] - begins_[point] <= MAX_COMPARED) continue;
+        glm::dvec3& sum = joint_[point];
+        for (size_t i = begins_[point]; i < begins_[point + 1]; ++i)
+            sum += double(entries_[i].angle) * normals_[entries_[i].triangle];
+    }
 }
 
 glm::dvec3 CornerNormals::at(size_t triangle, int corner) const
@@ -48,11 +54,14 @@ glm::dvec3 CornerNormals::at(size_t triangle, int corner) const
     const glm::dvec3& own = normals_[triangle];
     const uint32_t point = mesh_.triangles[triangle][corner];
     const size_t begin = begins_[point], end = begins_[point + 1];
-    const bool compares = end - begin <= MAX_COMPARED;
     glm::dvec3 sum(0.0);
-    for (size_t i = begin; i < end; ++i) {
-        const glm::dvec3& normal = normals_[entries_[i].triangle];
-        if (!compares || glm::dot(normal, own) >= COS_OF_EDGE) sum += double(entries_[i].angle) * normal;
+    if (end - begin > MAX_COMPARED) {
+        sum = joint_.at(point);
+    } else {
+        for (size_t i = begin; i < end; ++i) {
+            const glm::dvec3& normal = normals_[entries_[i].triangle];
+            if (glm::dot(normal, own) >= COS_OF_EDGE) sum += double(entries_[i].angle) * normal;
+        }
     }
     const double length = glm::length(sum);
     return length > 1e-9 ? sum / length : own;

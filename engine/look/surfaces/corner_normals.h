@@ -1,6 +1,7 @@
 #pragma once
 // Normals at the corners of a mesh's triangles. Plain data; any thread.
 
+#include <unordered_map>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -29,6 +30,7 @@ private:
     std::vector<glm::dvec3> normals_{};  ///< of unit length; 0 for a triangle without area
     std::vector<size_t> begins_{};       ///< for each point, its first in `entries_`; and the end
     std::vector<Entry> entries_{};
+    std::unordered_map<uint32_t, glm::dvec3> joint_{};  ///< by point, of more than 64 triangles: the sum of all
 };
 
 }  // namespace shvr

@@ -161,7 +161,8 @@ TEST_CASE_FIXTURE(Glb, "glTF that needs what is not supported is refused with it
                    "key extensionsRequired.0 is \"KHR_draco_mesh_compression\"; expected none: export it without"));
     CHECK(contains(refusal({{"/nodes/0/extensions/EXT_mesh_gpu_instancing", Json::object()}}),
                    "key nodes.0.extensions.EXT_mesh_gpu_instancing: states copies of a mesh; expected none"));
-    CHECK(glb.read(changed({{"/extensionsRequired", {"KHR_materials_unlit"}}})).triangles == TRIANGLES);
+    const Json unlit = changed({{"/extensionsRequired", {"KHR_materials_unlit"}}});
+    CHECK(mesh_of(folder, "a.glb", glb_of(unlit.dump(), square_binary())).triangles == TRIANGLES);
     CHECK(contains(refusal({{"/nodes/0/skin", 0}}), "key nodes.0.skin is 0; expected a mesh without a skeleton"));
     CHECK(contains(refusal({{"/accessors/0/sparse", Json::object()}}), "key accessors.0.sparse is {}; expected"));
     CHECK(contains(refusal({{"/accessors/0/type", "VEC2"}}), "key accessors.0.type is \"VEC2\"; expected VEC3"));

@@ -103,7 +103,10 @@ TEST_CASE("damaged binary STL is refused")
     CHECK(contains(refusal_of(folder, "a.stl", ""), "has 0 bytes; expected at least 84 of an STL file"));
     CHECK(contains(refusal_of(folder, "a.stl", with_count(3)), "states 3 triangles, but its 284 bytes can hold 4"));
     CHECK(contains(refusal_of(folder, "a.stl", stl_of({})), "holds no triangles; expected at least one"));
-    CHECK(contains(refusal_of(folder, "a.stl", with_count(8388609)),
+    CHECK(contains(refusal_of(folder, "a.stl", with_count(8388609)), "states 8388609 triangles; expected at most 4, "));
+    const std::filesystem::path large = folder.write("large.stl", with_count(8388609));
+    std::filesystem::resize_file(large, 84 + uintmax_t{50} * 8388609);  // sparse
+    CHECK(contains(error_of([&] { static_cast<void>(read_mesh(large, MESH_MEMORY, {})); }),
                    "holds 8388609 triangles; expected at most 8388608: decimate it"));
     Corners triangles = tetrahedron();
     triangles[2][1].y = std::numeric_limits<float>::infinity();
