@@ -224,7 +224,7 @@ void Device::read_traits()
 
     traits_.name = properties.properties.deviceName;
     traits_.driver = sentence(driver.driverName, " ", driver.driverInfo);
-    traits_.reads_by_address = keeps_atlas_in_buffer(std::getenv("SHVR_ATLAS"));
+    traits_.reads_by_address = keeps_atlas_in_buffer(std::getenv("SHVR_ATLAS"), driver.driverID, driver.driverInfo);
     traits_.is_cpu = properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
     if (traits_.is_cpu) traits_.cpu_threads = uint32_t(processors_allowed());
     traits_.limits = properties.properties.limits;

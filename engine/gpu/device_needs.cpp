@@ -1,5 +1,7 @@
 #include "engine/gpu/device_needs.h"
 
+#include <cstdio>
+
 #include <sys/resource.h>
 
 #include "engine/base/error.h"
@@ -51,12 +53,16 @@ int rank(VkPhysicalDeviceType type)
 
 }  // namespace
 
-bool keeps_atlas_in_buffer(const char* named)
+bool keeps_atlas_in_buffer(const char* named, VkDriverId driver, const std::string& info)
 {
     const std::string home = named ? named : "";
     if (!home.empty() && home != "image" && home != "buffer")
         fail("SHVR_ATLAS is '", home, "'; expected image or buffer");
-    return home == "buffer";
+    if (!home.empty()) return home == "buffer";
+    int major = 0, minor = 0;
+    if (driver != VK_DRIVER_ID_MESA_LLVMPIPE || std::sscanf(info.c_str(), "Mesa %d.%d", &major, &minor) != 2)
+        return false;
+    return major > 23 || (major == 23 && minor >= 3);
 }
 
 std::string no_driver_in_words()

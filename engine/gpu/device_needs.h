@@ -36,10 +36,10 @@ std::vector<Need> needs_of(const DeviceHas& has);
 std::optional<std::string> why_too_limited(const DeviceHas& has);
 
 /// Whether densities that kernels read exactly are kept in a buffer, read by its address, instead of images; the bits
-/// are the same. `named`: the value of SHVR_ATLAS, "image" or "buffer"; null or empty, if it is not set: images. A
-/// buffer may be faster with llvmpipe of Mesa 23.3 and later, where a load of an image is a call (shaders/MEASURED.md,
-/// "Mesa 25").
-bool keeps_atlas_in_buffer(const char* named);
+/// are the same. `named`: the value of SHVR_ATLAS, "image" or "buffer"; null or empty: a buffer with llvmpipe of Mesa
+/// 23.3 and later, where each load of an image is a call (shaders/MEASURED.md, "Mesa 25"). `info`: as a driver of Mesa
+/// states its version, such as "Mesa 25.0.7 (LLVM 19.1.7)".
+bool keeps_atlas_in_buffer(const char* named, VkDriverId driver, const std::string& info);
 
 /// Returns the message for a system without any Vulkan driver. It names a limit of the process's memory, which can keep
 /// a driver from loading; the loader reports no reason.

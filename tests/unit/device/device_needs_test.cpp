@@ -160,11 +160,21 @@ TEST_CASE("of several devices the best is taken that can show the window, and wh
                       "feature is missing)");
 }
 
-TEST_CASE("densities are in images unless the environment names a buffer")
+TEST_CASE("densities are in a buffer where Mesa's llvmpipe calls a function for each load of an image")
 {
-    CHECK(!keeps_atlas_in_buffer(nullptr));
-    CHECK(!keeps_atlas_in_buffer(""));
-    CHECK(!keeps_atlas_in_buffer("image"));
-    CHECK(keeps_atlas_in_buffer("buffer"));
-    CHECK_THROWS_WITH(keeps_atlas_in_buffer("texture"), "SHVR_ATLAS is 'texture'; expected image or buffer");
+    const auto in_buffer = [](const char* info, VkDriverId driver = VK_DRIVER_ID_MESA_LLVMPIPE) {
+        return keeps_atlas_in_buffer(nullptr, driver, info);
+    };
+    CHECK(in_buffer("Mesa 25.0.7-2+deb13u1 (LLVM 19.1.7)"));
+    CHECK(in_buffer("Mesa 23.3.0 (LLVM 17.0.6)"));
+    CHECK(!in_buffer("Mesa 23.2.1-1 (LLVM 15.0.7)"));
+    CHECK(!in_buffer("Mesa 22.3.6 (LLVM 15.0.6)"));
+    CHECK(!in_buffer("Mesa 25.0.7", VK_DRIVER_ID_MESA_RADV));
+    CHECK(!in_buffer("unknown"));
+    // The environment decides for any driver.
+    CHECK(keeps_atlas_in_buffer("buffer", VK_DRIVER_ID_NVIDIA_PROPRIETARY, "570.1"));
+    CHECK(!keeps_atlas_in_buffer("image", VK_DRIVER_ID_MESA_LLVMPIPE, "Mesa 25.0.7"));
+    CHECK(keeps_atlas_in_buffer("", VK_DRIVER_ID_MESA_LLVMPIPE, "Mesa 25.0.7"));
+    CHECK_THROWS_WITH(keeps_atlas_in_buffer("texture", VK_DRIVER_ID_MESA_LLVMPIPE, "Mesa 25.0.7"),
+                      "SHVR_ATLAS is 'texture'; expected image or buffer");
 }
