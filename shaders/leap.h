@@ -15,6 +15,9 @@ SHARED_CONST uint LEAP_PAINTED = 1u << 24u;
 SHARED_CONST uint LEAP_DISTANCE_SHIFT = 25u;
 /// Maximum distance searched: a leap of 15 cells crosses 60 voxels.
 SHARED_CONST uint LEAP_LIMIT = 15u;
+/// While the grid is built, its stages hand on a byte for each cell: (distance << 1) | painted.
+SHARED_CONST uint LEAP_BYTE_PAINTED = 1u;
+SHARED_CONST uint LEAP_BYTE_SHIFT = 1u;
 
 /// Tolerance, in codes, by which a sample may exceed its cell's range. With it, pictures with and without skipping are
 /// equal, bit for bit. Exact sampling is a few ulp off; a device's filter may be off by a code.

@@ -173,7 +173,8 @@ void ResidentVolume::create_images()
     if (codes_ != AtlasCodes::filtered && glm::all(glm::lessThanEqual(glm::uvec3(info().size), most)) &&
         memory_.can_create(bits))
         sample_bits_ = create("sample bits", bits);
-    for (gpu::Storage& scratch : leap_scratch_) scratch = create("leap scratch", shape->cells);
+    const ResourceDesc bytes = image_desc(Format::r8_uint, shape->cells.texels);
+    for (gpu::Storage& scratch : leap_scratch_) scratch = create("leap scratch", bytes);
 }
 
 /// A brick at a face of the volume also fills the part of the atlas's border next to that face.
@@ -239,9 +240,10 @@ double ResidentVolume::loaded() const
 uint64_t ResidentVolume::bytes_for(const VolumeInfo& info, AtlasCodes codes)
 {
     const glm::u64vec3 counts(brick_counts(info.size)), of_codes(codes_side_by_side(glm::uvec3(counts)));
-    constexpr uint64_t LEAP_IMAGES = 5;  // the grid, its two scratch images, and the sample bits, which count twice
+    // Besides ranges: the grid, the sample bits, which count twice, and two scratch images of a byte for each cell.
+    constexpr uint64_t LEAP_BYTES = 3 * BrickTexels::RANGE_BYTES + 2 * BrickTexels::RANGE_BYTES / sizeof(uint32_t);
     return of_codes.x * of_codes.y * of_codes.z * code_bytes(codes) +
-           counts.x * counts.y * counts.z * (BrickTexels::RANGE_BYTES * (1 + LEAP_IMAGES) + sizeof(uint32_t));
+           counts.x * counts.y * counts.z * (BrickTexels::RANGE_BYTES + LEAP_BYTES + sizeof(uint32_t));
 }
 
 std::optional<RegionBricks> ResidentVolume::region(const VoxelBox& voxels, bool /*wait*/)

@@ -16,12 +16,13 @@ CellBox cells_of_stage(const CellBox& changed, const glm::uvec3& counts, uint32_
     return {changed.begin - glm::min(changed.begin, reach), glm::min(changed.end + reach, counts)};
 }
 
+/// Writes entries of the grid to `to` if it is a patch, else bytes.
 void occupancy(FrameGraph& graph, const VolumeBinding& volume, const LeapGridInput& input, const CellBox& cells,
-               uint32_t empty_distance, Resource& to)
+               bool is_patch, Resource& to)
 {
-    Pass pass = graph.compute("leap_occupancy", {{"MASKED", input.mask.has_value()}});
+    Pass pass = graph.compute("leap_occupancy", {{"MASKED", input.mask.has_value()}, {"PATCH", is_patch}});
     pass.read("cell_ranges", volume.cell_ranges);
-    pass.read("page_table", volume.page_table);
+    if (is_patch) pass.read("page_table", volume.page_table);
     pass.block("visible_intervals", std::span<const uint32_t>(input.visible_intervals));
     if (input.mask) {
         pass.read("mask", input.mask->mask);
@@ -31,20 +32,24 @@ void occupancy(FrameGraph& graph, const VolumeBinding& volume, const LeapGridInp
     gpu::OccupancyParams params = input.params;
     params.cell_begin = cells.begin;
     params.cell_end = cells.end;
-    params.empty_distance = empty_distance;
-    graph.expect({variant_of("leap_occupancy", {{"MASKED", true}}), {}});  // needed once something is painted
+    params.empty_distance = is_patch ? 1 : gpu::LEAP_LIMIT;
+    for (const bool patch : {false, true})  // needed once something is painted
+        graph.expect({variant_of("leap_occupancy", {{"MASKED", true}, {"PATCH", patch}}), {}});
     graph.expect({"leap_bound", {}});
     pass.push(params);
     pass.dispatch(cells.end - cells.begin);
     to = pass.write("leap", to);
 }
 
+/// Writes bytes to `to`, and entries of the grid for the last axis, z.
 void distance(FrameGraph& graph, const VolumeBinding& volume, uint32_t axis, const CellBox& cells, Resource from,
               Resource& to)
 {
     const char* const names[] = {"leap_distance x", "leap_distance y", "leap_distance z"};
-    Pass pass = graph.compute("leap_distance", names[axis]);
+    const bool is_last = axis == 2;
+    Pass pass = graph.compute("leap_distance", {{"LAST", is_last}}, names[axis]);
     pass.read("source", from);
+    if (is_last) pass.read("page_table", volume.page_table);
     pass.push(gpu::LeapDistanceParams{volume.cell_counts, cells.begin, cells.end, axis});
     pass.dispatch(cells.end - cells.begin);
     to = pass.write("leap", to);
@@ -87,7 +92,7 @@ void leap_grid_stage(FrameGraph& graph, VolumeBinding& volume, const LeapGridInp
 {
     const CellBox cells = cells_of_stage(input.changed, volume.cell_counts, stage);
     switch (stage) {
-        case 0: return occupancy(graph, volume, input, cells, gpu::LEAP_LIMIT, volume.leap_scratch[0]);
+        case 0: return occupancy(graph, volume, input, cells, false, volume.leap_scratch[0]);
         case 1: return distance(graph, volume, 0, cells, volume.leap_scratch[0], volume.leap_scratch[1]);
         case 2: return distance(graph, volume, 1, cells, volume.leap_scratch[1], volume.leap_scratch[0]);
         case 3:
@@ -106,7 +111,7 @@ void leap_grid_patch(FrameGraph& graph, VolumeBinding& volume, const LeapGridInp
     pass.dispatch(cells.end - cells.begin);
     volume.leap = pass.modify("leap", volume.leap);
     const CellBox inside{input.changed.begin, glm::min(input.changed.end, volume.cell_counts)};
-    occupancy(graph, volume, input, inside, 1, volume.leap);
+    occupancy(graph, volume, input, inside, true, volume.leap);
     sample_bits(graph, volume, input);
 }
 

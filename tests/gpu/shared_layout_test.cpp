@@ -257,11 +257,13 @@ TEST_CASE("members of shared structs lie where C++ puts them")
         check_members(kernel, "jobs",
                       {MEMBER(BrickUnpackJob, code), MEMBER(BrickUnpackJob, codes), MEMBER(BrickUnpackJob, extent),
                        MEMBER(BrickUnpackJob, cell), MEMBER(BrickUnpackJob, ranges)});
-    for (const char* kernel : {"leap_occupancy", "leap_occupancy_masked"})
+    for (const char* kernel :
+         {"leap_occupancy", "leap_occupancy_masked", "leap_occupancy_patch", "leap_occupancy_masked_patch"})
         check_members(kernel, "push", occupancy_params());
-    check_members("leap_distance", "push",
-                  {MEMBER(LeapDistanceParams, cell_counts), MEMBER(LeapDistanceParams, cell_begin),
-                   MEMBER(LeapDistanceParams, cell_end), MEMBER(LeapDistanceParams, axis)});
+    for (const char* kernel : {"leap_distance", "leap_distance_last"})
+        check_members(kernel, "push",
+                      {MEMBER(LeapDistanceParams, cell_counts), MEMBER(LeapDistanceParams, cell_begin),
+                       MEMBER(LeapDistanceParams, cell_end), MEMBER(LeapDistanceParams, axis)});
     check_members("leap_bound", "push",
                   {MEMBER(LeapBoundParams, cell_begin), MEMBER(LeapBoundParams, cell_end),
                    MEMBER(LeapBoundParams, changed_begin), MEMBER(LeapBoundParams, changed_end)});

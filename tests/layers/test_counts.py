@@ -21,7 +21,7 @@ class Counts(CliTest):
         self.assertLessEqual(counts["vkQueueSubmit2"], 27)
         self.assertLessEqual(counts["vkAllocateMemory"], 17)
         self.assertLessEqual(counts["vkDeviceWaitIdle"], 2)   # at the end
-        self.assertLessEqual(counts["vkCreateComputePipelines"], 4)
+        self.assertLessEqual(counts["vkCreateComputePipelines"], 5)   # three of the leap grid, its sample bits, rays
         for made_once in ["vkCreateFence", "vkCreateCommandPool", "vkCreateQueryPool", "vkCreateDescriptorPool"]:
             self.assertEqual(counts[made_once], 1, made_once)
 
