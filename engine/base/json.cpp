@@ -266,9 +266,10 @@ std::vector<std::string> JsonNode::names() const
 std::vector<JsonNode> JsonNode::elements(size_t least, size_t most) const
 {
     if (!is_array() || count() < least || count() > most) {
-        if (least == most) refuse(sentence("an array of ", least));
-        if (most != SIZE_MAX) refuse(sentence("an array of ", least, " to ", most));
-        refuse(least == 0 ? "an array" : sentence("an array of ", least, " or more"));
+        const std::string found = is_array() ? sentence(", not of ", count()) : "";
+        if (least == most) refuse(sentence("an array of ", least, found));
+        if (most != SIZE_MAX) refuse(sentence("an array of ", least, " to ", most, found));
+        refuse(least == 0 ? "an array" : sentence("an array of ", least, " or more", found));
     }
     std::vector<JsonNode> elements;
     elements.reserve(count());

@@ -58,7 +58,7 @@ TEST_CASE("what is missing or does not fit is named by its key in full, with wha
     CHECK(refusal("[1, 2]", [](const JsonNode& root) { root.vector(any_number()); }) ==
           "a.json: the document is [1,2]; expected three numbers, [x, y, z]");
     CHECK(refusal("[1, 2]", [](const JsonNode& root) { root.elements(3, 4); }) ==
-          "a.json: the document is [1,2]; expected an array of 3 to 4");
+          "a.json: the document is [1,2]; expected an array of 3 to 4, not of 2");
     CHECK(refusal(text, [&](const JsonNode& root) { c_of(root).checked([] { fail("the sum is odd"); }); }) ==
           "a.json: key a.0.b.c: the sum is odd");
 }

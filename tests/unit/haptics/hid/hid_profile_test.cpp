@@ -92,7 +92,8 @@ TEST_CASE("what is wrong in a profile is said in one sentence")
           "x.json: key limits.peak_force_n is missing; expected a number from 0 to 40");
     CHECK(error_with("/verified", 1) == "x.json: key verified is 1; expected true or false");
     CHECK(error_with("/name", "") == "x.json: key name is \"\"; expected a text that is not empty");
-    CHECK(error_with("/match", nlohmann::json::array()) == "x.json: key match is []; expected an array of 1 or more");
+    CHECK(error_with("/match", nlohmann::json::array()) ==
+          "x.json: key match is []; expected an array of 1 or more, not of 0");
     CHECK(error_with("/match/0/vendor", 4617) ==
           "x.json: key match.0.vendor is 4617; expected four hexadecimal digits, as in \"0x1209\"");
     CHECK(error_with("/match/0/vendor", "0x12g9").find("expected four hexadecimal digits") != std::string::npos);
@@ -149,7 +150,7 @@ TEST_CASE("axes are turned and flipped, never bent")
     CHECK(error_with("/axes", {{1, 0, 0}, {1, 0, 0}, {0, 0, 1}}).ends_with(expected));
     CHECK(error_with("/axes", {{0.5, 0, 0}, {0, 1, 0}, {0, 0, 1}}).ends_with(expected));
     CHECK(error_with("/axes", {{1, 1, 0}, {0, 1, 0}, {0, 0, 1}}).ends_with(expected));
-    CHECK(error_with("/axes", {{1, 0, 0}, {0, 1, 0}}).ends_with("expected an array of 3"));
+    CHECK(error_with("/axes", {{1, 0, 0}, {0, 1, 0}}).ends_with("expected an array of 3, not of 2"));
     nlohmann::json document = reference();
     document["axes"] = {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}};
     const HidProfile profile = parse_hid_profile(document.dump(), "x.json");
