@@ -25,6 +25,9 @@ constexpr const char* EXPECTED =
     "; expected a volume, a session, a project, a mask, density offsets, a trace, a transfer function, a mesh or a "
     "picture that was made here";
 
+/// Extensions of meshes in formats that are not read.
+constexpr std::string_view OTHER_MESHES[] = {".gltf", ".dae", ".fbx", ".3ds", ".3mf", ".off", ".vtp", ".wrl", ".x3d"};
+
 std::string first_bytes(const fs::path& path)
 {
     std::string bytes(4096, '\0');
@@ -96,6 +99,9 @@ WhatItIs content_of(const fs::path& path, const VolumeInfo* open)
         if (!session_file_of(path).empty()) return {.content = FileContent::project};
         return content_of_volume(path, open);
     }
+    if (std::ranges::find(OTHER_MESHES, lower_case(path.extension().string())) != std::end(OTHER_MESHES))
+        fail(path.string(),
+             ": is no mesh that can be read; expected .stl, .ply, .obj or .glb: export it as one of them");
     const std::string begin = first_bytes(path);
     const size_t first = begin.find_first_not_of(" \t\r\n");
     if (begin.starts_with("\x89PNG")) return {.content = FileContent::picture};

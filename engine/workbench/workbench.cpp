@@ -130,7 +130,8 @@ Model Workbench::model() const
             all.presets.model(),
             all.window.model(),
             {.recent = &recent_, .version = desk_.options.version},
-            all.looks.model()};
+            all.looks.model(),
+            all.meshes.model()};
 }
 
 }  // namespace shvr::ui

@@ -291,15 +291,17 @@ void show_meshes(Opened& opened, const std::string& path, const Common& common, 
     if (opened.session.meshes.empty()) return;
     ReadMeshes read = read_meshes(opened.session, opened.source->info(), opened.renderer->host_budget(),
                                   work.begin("reading meshes of " + path));
-    if (!read.failures.empty() && common.allows_incomplete == false) {
+    std::vector<std::string> failures;
+    for (const auto& [file, failure] : read.failures) failures.push_back(failure);
+    if (!failures.empty() && common.allows_incomplete == false) {
         std::string told;
-        for (const std::string& failure : read.failures) told += failure + "; ";
-        fail(told, "--allow-incomplete draws the picture without ", read.failures.size() == 1 ? "it" : "them");
+        for (const std::string& failure : failures) told += failure + "; ";
+        fail(told, "--allow-incomplete draws the picture without ", failures.size() == 1 ? "it" : "them");
     }
-    warn_of_losses(read.failures);
+    warn_of_losses(failures);
     warn(read.warnings, common);
-    opened.lacks_meshes = !read.failures.empty();
-    for (const auto* const told : {&read.failures, &read.warnings})
+    opened.lacks_meshes = !failures.empty();
+    for (const auto* const told : {&failures, &read.warnings})
         opened.warnings.insert(opened.warnings.end(), told->begin(), told->end());
     opened.renderer->scene().show_meshes(std::move(read.tree));
 }

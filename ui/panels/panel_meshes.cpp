@@ -1,6 +1,9 @@
 // Meshes shown with the scan: visible or not, colour, file, and removal.
 
+#include <algorithm>
 #include <filesystem>
+#include <string>
+#include <utility>
 
 #include <imgui/imgui.h>
 
@@ -15,6 +18,13 @@ namespace shvr::ui {
 namespace {
 
 constexpr glm::dvec3 STANDARD_COLOR(0.578, 0.456, 0.262);  ///< linear; as drawn without a colour of the file
+
+/// Empty: the mesh is drawn, is hidden, or is still being read.
+std::string failure_of(const MeshLook& mesh, const Model& model)
+{
+    const auto failed = std::ranges::find(model.unshown_meshes, mesh.file, &std::pair<std::string, std::string>::first);
+    return mesh.shown && failed != model.unshown_meshes.end() ? failed->second : "";
+}
 
 void mesh_row(size_t at, const Model& model, Actions& actions)
 {
@@ -31,8 +41,16 @@ void mesh_row(size_t at, const Model& model, Actions& actions)
     hint(mesh.color ? "Its colour." : "Coloured as its file states. Choose a colour for all of it here.");
     ImGui::TableNextColumn();
     ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(std::filesystem::path(mesh.file).filename().string().c_str());
-    hint(mesh.file.c_str());
+    const std::string name = std::filesystem::path(mesh.file).filename().string();
+    want_glyphs(name);
+    const std::string failure = failure_of(mesh, model);
+    if (failure.empty()) {
+        ImGui::TextUnformatted(name.c_str());
+        hint(mesh.file.c_str());
+    } else {
+        ImGui::TextColored(color_of(ColorRole::error), "%s: not drawn", name.c_str());
+        hint((failure + ". Hide and show it to read it again.").c_str());
+    }
     ImGui::TableNextColumn();
     if (ImGui::SmallButton("x"))
         set(actions, model, [&](Session& s) { s.meshes.erase(s.meshes.begin() + ptrdiff_t(at)); });

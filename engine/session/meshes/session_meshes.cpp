@@ -85,7 +85,7 @@ ReadMeshes read_meshes(const Session& session, const VolumeInfo& volume, uint64_
             shapes.push_back(std::move(placed.shape));
             if (!placed.warning.empty()) read.warnings.push_back(std::move(placed.warning));
         } catch (const Error& error) {
-            read.failures.push_back(error.what());
+            read.failures.emplace_back(look.file, error.what());
         }
     }
     read.tree = mesh_tree(shapes, volume);

@@ -2,6 +2,7 @@
 // Reads the meshes that a session shows, into the volume's space. Any thread.
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/base/progress.h"
@@ -11,8 +12,9 @@
 namespace shvr {
 
 struct ReadMeshes {
-    MeshTree tree;                      ///< triangles of the meshes that are shown and could be read
-    std::vector<std::string> failures;  ///< one sentence for each that cannot be shown
+    MeshTree tree;  ///< triangles of the meshes that are shown and could be read
+    /// Those that cannot be shown: MeshLook::file, and a sentence.
+    std::vector<std::pair<std::string, std::string>> failures;
     std::vector<std::string> warnings;  ///< about those in `tree`: they lie outside the volume
 };
 /// Reads the meshes that are shown. Positions are those of the volume's physical space, in its unit, unless a file

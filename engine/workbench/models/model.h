@@ -27,7 +27,8 @@ struct Model : DocumentModel,
                PresetModel,
                WindowModel,
                ReportModel,
-               LookModel {
+               LookModel,
+               MeshModel {
     const BrushSettings& brush() const { return session.probe.brush; }
     double paint_threshold() const { return brush().threshold.value_or(0.0); }
     double haptic_threshold() const { return session.probe.haptic_threshold.value_or(0.0); }

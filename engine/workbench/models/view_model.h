@@ -3,6 +3,8 @@
 
 #include <optional>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/live/screen.h"
@@ -22,6 +24,12 @@ struct ViewModel {
     std::optional<glm::dvec3> picked_pivot{};  ///< pivot picked by the user, in volume space; settings select its use
     bool view_is_complete = true;
     bool view_is_limited = false;  ///< drawn coarser than the screen: visible bricks exceed the memory budget
+};
+
+/// Made by the shower of meshes.
+struct MeshModel {
+    /// Those that cannot be shown: MeshLook::file, and a sentence.
+    std::span<const std::pair<std::string, std::string>> unshown_meshes;
 };
 
 /// Made by the reader. Lengths in voxels.

@@ -68,8 +68,9 @@ class Meshes(CliTest):
         turned = self.write_session("turned.json", groups=groups, **self.look | {"volume": {"path": "right.nrrd"}})
         turned_bare = self.write_session("turned_bare.json", annotation={}, **self.look | {"volume": {"path": "right.nrrd"}})
         expected = None
-        for of, into in ((self.session, turned_bare), (turned, self.bare), (turned, turned_bare)):
-            for form in ("stl", "ply", "obj", "glb"):
+        for of, into, forms in ((self.session, turned_bare, ("stl", "ply", "obj", "glb")), (turned, self.bare, ("stl",)),
+                                (turned, turned_bare, ("glb",))):
+            for form in forms:
                 with self.subTest(of=of.name, form=form):
                     file = self.folder / f"a.{form}"
                     self.check("export", of, "--surface", f"9:{file}", "--smooth", "0")
@@ -124,12 +125,12 @@ class Meshes(CliTest):
         seen = self.picture(self.bare, mesh, warnings=["um.stl: lies outside the scan: its box is x 9000 to 9010, y 20 to 20, "
                             "z 0 to 7.5, that of the scan x 95.5 to 100.5, y 19.75 to 25.75, z -31 to -7 mm"])
         self.assertEqual(seen, blank)
-        self.picture(self.bare, self.stl_at("in.stl", ((9000, 20, 0), (90, 20, 0), (9000, 20, 7.5))))
+        self.picture(self.bare, self.stl_at("in.stl", ((9000, 22, -20), (90, 22, -20), (9000, 22, -12))))
 
     def test_meshes_share_one_budget_of_memory(self):
         corners = ((98, 22, -20), (99, 22, -20), (98, 22, -10))
         one, two = (self.stl_at(name, corners, 150000) for name in ("one.stl", "two.stl"))
-        options = ["--budget-host", "64"]
+        options = ["--budget-host", "64", "--set", "view.meshes=false"]   # drawing a pile of triangles takes long
         self.picture(self.bare, one, options=options)
         self.check_refused("render", self.bare, "-o", self.folder / "b.png", *options, "--set",
                            "meshes=" + json.dumps([one, two]), says=["two.stl: takes", "which the meshes before it leave"])
@@ -202,6 +203,11 @@ class Meshes(CliTest):
         self.check_refused("annotate", self.session, "--script",
                            self.write_script("none.jsonl", [{**load, "path": str(self.session), "what": "mesh"}]),
                            says=["session.json"])
+        for name in ("model.gltf", "MODEL.DAE"):
+            (self.folder / name).write_text("{}")
+            self.check_refused("annotate", self.session, "--script",
+                               self.write_script("other.jsonl", [{**load, "path": str(self.folder / name)}]),
+                               says=[name, "expected .stl, .ply, .obj or .glb: export it as one of them"])
 
 
 if __name__ == "__main__":

@@ -60,8 +60,19 @@ class Meshes(Seen):
         self.until(self.is_green, "the mesh of the session")
         self.drop(broken)
         self.until(lambda: any("broken.ply" in seen["text"] for seen in self.seen(window="Status")), "the reason")
+        # So is a format that is not read.
+        (self.folder / "model.gltf").write_text("{}")
+        self.drop(self.folder / "model.gltf")
+        self.until(lambda: any("is no mesh that can be read" in seen["text"] for seen in self.seen(window="Status")),
+                   "the formats")
         report = self.finish()
         self.assertTrue(any("broken.ply" in said for said in report["messages"]), report["messages"])
+
+        # One whose file is gone is listed as not drawn.
+        mesh.rename(self.folder / "away.ply")
+        self.open_scan(session, preferences=only_panel("meshes"))
+        self.see("octahedron.ply: not drawn", PANEL)
+        self.finish()
 
 
 if __name__ == "__main__":

@@ -13,6 +13,7 @@ void MeshShower::advance()
     const bool has_none = meshes.empty() && (!is_same_scene || wanted_.empty());
     wanted_ = meshes;
     scene_ = renderer_.scene().number();
+    failures_.clear();
     if (!has_none) begin_reading();
 }
 
@@ -26,7 +27,8 @@ void MeshShower::begin_reading()
             std::make_shared<ReadMeshes>(read_meshes(*session, volume, memory, reporter.begin("reading meshes")));
         return [this, read, scene] {
             if (!document_ || renderer_.scene().number() != scene) return;
-            for (const std::string& failure : read->failures) say(failure, Weight::error);
+            for (const auto& [file, failure] : read->failures) say(failure, Weight::error);
+            failures_ = std::move(read->failures);
             for (const std::string& warning : read->warnings) say(warning, Weight::warning);
             try {
                 renderer_.scene().show_meshes(std::move(read->tree));
