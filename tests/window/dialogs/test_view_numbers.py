@@ -39,6 +39,9 @@ class Numbers(Operating):
         self.see_frames()
         self.assertEqual([line for line in self.done() if line["op"] == "grow"], [])
         self.assertEqual(self.previewed()["distance"], 1.5)
+        self.type_number("Distance in voxels", "0")
+        self.press("Return")
+        self.see("key distance is 0.0; expected a number above 0", OPERATIONS)   # the suggestion does not come back
         self.type_number("Distance in voxels", "2,25")
         self.until(lambda: not any("is not a number" in seen["text"] for seen in self.seen(window=OPERATIONS)),
                    "dialog without a refusal")

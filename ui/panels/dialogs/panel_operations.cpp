@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -44,8 +46,8 @@ std::array<GroupOperation, std::variant_size_v<GroupOperation>> suggestions()
 struct OperationsState {
     std::array<GroupOperation, std::variant_size_v<GroupOperation>> operations = suggestions();
     size_t chosen = GroupOperation(GrowOp()).index();
-    int64_t group = 0;     ///< the active group that was last taken over
-    uint64_t opening = 0;  ///< the document for which distances were suggested
+    int64_t group = 0;                              ///< the active group that was last taken over
+    std::optional<std::filesystem::path> volume{};  ///< the scan for which distances were suggested
     bool shows_preview = true;
     std::string why_no_limits;  ///< and what the rows of limits or islands lack
     /// What is typed as lists of groups, and why it is none.
@@ -60,6 +62,7 @@ void follow(const Model& model)
 {
     const int64_t group = std::max<int64_t>(model.brush().group, 1);
     const glm::dvec3& spacing = model.volume.spacing;
+    const bool is_new_scan = std::exchange(state.volume, model.session.volume_path) != model.session.volume_path;
     const double suggested = 2.0 * std::min({spacing.x, spacing.y, spacing.z});
     for (GroupOperation& each : state.operations)
         std::visit(
@@ -67,9 +70,9 @@ void follow(const Model& model)
                 if constexpr (requires { op.group; })
                     if (state.group != group) op.group = group;
                 if constexpr (requires { op.distance; })
-                    if (!(op.distance > 0.0)) op.distance = suggested;
+                    if (is_new_scan) op.distance = suggested;
                 if constexpr (requires { op.wall; })
-                    if (!(op.wall > 0.0)) op.wall = suggested;
+                    if (is_new_scan) op.wall = suggested;
                 if constexpr (requires { op.with; })
                     if (op.with == op.group) op.with = op.group == 1 ? 2 : 1;
                 if constexpr (std::is_same_v<std::remove_cvref_t<decltype(op)>, ThresholdOp>)
@@ -237,7 +240,7 @@ void operations_window(const Model& model, Actions& actions)
         ImGui::EndDisabled();
         hint("Changes the voxels; Undo takes it back");
         ImGui::SameLine();
-        if (ImGui::Button("Close", button)) is_shown = false;
+        if (ImGui::Button("Done", button)) is_shown = false;  // "Close" is an operation
     }
     ImGui::End();
     if (!is_shown) actions.push_back(ShowDialog{});
