@@ -111,7 +111,7 @@ MAY_INCLUDE = {
     "engine/workbench/services": "engine/base engine/remote engine/look engine/movie engine/annotation/operations engine/annotation/work "
     "engine/session engine/session/meshes engine/session/looks engine/session/words engine/tasks engine/live "
     "engine/workbench/models engine/workbench/actions engine/workbench/lists engine/workbench/sight engine/workbench/edits "
-    "engine/workbench/words engine/workbench/document engine/workbench/desk",
+    "engine/workbench/words engine/workbench/document engine/workbench/desk engine/workbench/forms",
     "engine/workbench": "engine/base engine/workbench/actions engine/workbench/lists engine/workbench/desk "
     "engine/workbench/services",
     "ui/files": "engine/base engine/remote engine/formats",

@@ -33,10 +33,16 @@ void draw_rimmed(ImDrawList& list, const ImVec2& at, const glm::dvec3& ink, cons
     list.AddText(at, color_of(ink, 1.0f), text);
 }
 
-/// Draws marks and their texts.
+/// Draws marks and their texts in a pane.
 template <class OnScreen>
-void draw_over(const Marks& marks, const OnScreen& on_screen, ImDrawList& list)
+void draw_over(Marks marks, const glm::uvec2& pane, const OnScreen& on_screen, ImDrawList& list)
 {
+    std::vector<glm::dvec2> sizes;
+    for (const Label& label : marks.labels) {
+        const ImVec2 size = ImGui::CalcTextSize(label.text.c_str());
+        sizes.emplace_back(size.x, size.y);
+    }
+    spread_labels(marks, sizes, LABEL_MARGIN * double(ImGui::GetFontSize() / FONT_UNITS), pane);
     for (const Stroke& stroke : marks.strokes)
         list.AddLine(on_screen(stroke.from), on_screen(stroke.to), color_of(stroke.color, 1.0f), float(stroke.width));
     for (const Label& label : marks.labels) {
@@ -120,7 +126,8 @@ void App::say_that_it_is_coming() const
                             .text = "The first picture is being made ...",
                             .color = glm::dvec3(1.0)});
     draw_over(
-        words, [](const glm::dvec2& at) { return ImVec2(float(at.x), float(at.y)); }, *ImGui::GetBackgroundDrawList());
+        words, window_.pixels(), [](const glm::dvec2& at) { return ImVec2(float(at.x), float(at.y)); },
+        *ImGui::GetBackgroundDrawList());
 }
 
 /// Draws the lines over each pane: the probe's outline, even if the probe is hidden by the volume; in maps, the
@@ -148,7 +155,8 @@ void App::draw_strokes() const
         if (part.view->shown_camera()) {
             Pane shown = part.pane;
             shown.shot.camera = *part.view->shown_camera();
-            draw_over(marks_of(seen, shown, size_t(&part - document.screen.parts().data()), units), on_screen, list);
+            draw_over(marks_of(seen, shown, size_t(&part - document.screen.parts().data()), units), pixels, on_screen,
+                      list);
         }
         const Camera* const camera = part.view->shown_camera();
         if (servo && servo->step.in_contact && camera) {

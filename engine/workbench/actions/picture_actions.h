@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/text.h"
 #include "engine/workbench/actions/action_row.h"
 
 namespace shvr::ui {
@@ -18,6 +19,13 @@ struct TextInFigure {
 };
 inline constexpr size_t MAX_FIGURE_TEXTS = 100;
 
+/// What publications need over a picture (engine/workbench/sight/figure_elements.h).
+struct DrawnElements {
+    bool has_scale_bar = false, has_color_bar = false, has_legend = false, has_axes = false;
+    std::string title;
+    std::vector<TextInFigure> texts;
+};
+
 /// Draws the present view as a figure, with what publications need over it.
 struct FigureTask {
     static constexpr const char* TITLE = "Figure";
@@ -27,9 +35,7 @@ struct FigureTask {
     glm::ivec2 pixels{0};         ///< 0, 0: as the window's picture
     double dots_per_inch = 0.0;   ///< stored in the file; 0: none
     bool is_transparent = false;  ///< the background
-    bool has_scale_bar = false, has_color_bar = false, has_legend = false, has_axes = false;
-    std::string title;
-    std::vector<TextInFigure> texts;
+    DrawnElements elements;
 };
 
 /// Draws a movie that turns the volume, or goes from view to view.
@@ -41,8 +47,8 @@ struct MovieTask {
     double turntable_degrees = 0.0;
     int frames = 120;
     double frames_per_second = 30.0;
-    glm::ivec2 pixels{0};  ///< as in FigureTask
-    bool has_scale_bar = false;
+    glm::ivec2 pixels{0};    ///< as in FigureTask
+    DrawnElements elements;  ///< over each frame
 };
 
 inline constexpr const char* PICTURES_GROUP = "Pictures";
@@ -62,6 +68,22 @@ void size_field(Visitor& f, glm::ivec2& pixels)
     pixels = {int(values[0]), int(values[1])};
 }
 
+template <class Visitor>
+void element_fields(Visitor& f, DrawnElements& elements)
+{
+    f.flag("scale_bar", elements.has_scale_bar, {"a line of a rounded length"});
+    f.flag("color_bar", elements.has_color_bar, {"colours and opacity of the transfer function"});
+    f.flag("legend", elements.has_legend, {"colours and names of the groups"});
+    f.flag("axes", elements.has_axes, {"directions of x, y and z"});
+    f.text("title", elements.title, {"above the picture"});
+    const auto visit = [&](auto& item, size_t index, size_t count) {
+        elements.texts.resize(count);
+        item.vector("voxel", elements.texts[index].voxel, VOXELS, {.is_required = true});
+        item.text("text", elements.texts[index].text, {.is_required = true});
+    };
+    f.items("texts", elements.texts.size(), MAX_FIGURE_TEXTS, visit, {"texts at points"});
+}
+
 inline constexpr auto PICTURE_ACTIONS = std::tuple{
     row<FigureTask, Photographer>(
         {"figure", "Figure", PICTURES_GROUP,
@@ -72,22 +94,12 @@ inline constexpr auto PICTURE_ACTIONS = std::tuple{
             size_field(f, a.pixels);
             f.number("dots_per_inch", a.dots_per_inch, {0.0, 10'000.0}, {"stored in the file; 0: none"});
             f.flag("transparent", a.is_transparent, {"the background"});
-            f.flag("scale_bar", a.has_scale_bar, {"a line of a rounded length"});
-            f.flag("color_bar", a.has_color_bar, {"colours and opacity of the transfer function"});
-            f.flag("legend", a.has_legend, {"colours and names of the groups"});
-            f.flag("axes", a.has_axes, {"directions of x, y and z"});
-            f.text("title", a.title, {"above the picture"});
-            const auto visit = [&](auto& item, size_t index, size_t count) {
-                a.texts.resize(count);
-                item.vector("voxel", a.texts[index].voxel, VOXELS, {.is_required = true});
-                item.text("text", a.texts[index].text, {.is_required = true});
-            };
-            f.items("texts", a.texts.size(), MAX_FIGURE_TEXTS, visit, {"texts at points"});
+            element_fields(f, a.elements);
         },
         [](const auto& model, const FigureTask& task) -> std::string {
             if (is_drawing_picture(model)) return IS_DRAWING_PICTURE;
             if (task.is_copied) return task.path.empty() ? "" : "a copied figure has no path";
-            const std::string ending = task.path.extension().string();
+            const std::string ending = lower_case(task.path.extension().string());
             constexpr std::array ENDINGS{".png", ".tif", ".tiff"};
             return std::ranges::find(ENDINGS, ending) != ENDINGS.end()
                        ? ""
@@ -105,7 +117,7 @@ inline constexpr auto PICTURE_ACTIONS = std::tuple{
             f.whole("frames", a.frames, 1, 100'000, {"number of pictures"});
             f.number("frames_per_second", a.frames_per_second, {0.1, 240.0}, {"speed of a .webm or .mp4"});
             size_field(f, a.pixels);
-            f.flag("scale_bar", a.has_scale_bar, {"a line of a rounded length"});
+            element_fields(f, a.elements);
         },
         [](const auto& model, const MovieTask& task) -> std::string {
             if (is_drawing_picture(model)) return IS_DRAWING_PICTURE;

@@ -43,18 +43,32 @@ FigureForm suggested_figure(const Model& model, const FigureForm& last)
     const std::string ending = std::filesystem::path(last.path).extension().string();
     form.path = base_of(model).string() + "-figure" + (ending.empty() ? ".png" : ending);
     form.size.height = std::round(form.size.width * shape_of(model));
-    form.more.title.clear();
-    form.more.texts.clear();
+    form.elements = suggested_elements(model, last.elements);
+    return form;
+}
+
+ElementsForm suggested_elements(const Model& model, const ElementsForm& last)
+{
+    ElementsForm form = last;
+    form.drawn.title.clear();
+    form.drawn.texts.clear();
     form.next_text.clear();
     form.probe_voxel = model.probe_voxel;
     return form;
 }
 
-void add_text(FigureForm& form)
+void add_text(ElementsForm& form)
 {
-    if (trimmed(form.next_text).empty() || form.more.texts.size() >= MAX_FIGURE_TEXTS) return;
-    form.more.texts.push_back({form.probe_voxel, form.next_text});
+    if (trimmed(form.next_text).empty() || form.drawn.texts.size() >= MAX_FIGURE_TEXTS) return;
+    form.drawn.texts.push_back({form.probe_voxel, form.next_text});
     form.next_text.clear();
+}
+
+DrawnElements elements_of(const ElementsForm& form)
+{
+    ElementsForm complete = form;
+    add_text(complete);
+    return complete.drawn;
 }
 
 std::string why_not(const FigureForm& form)
@@ -66,11 +80,21 @@ std::string why_not(const FigureForm& form)
                     MAX_PRINT_DPI, " dots per inch");
 }
 
+FigureElements elements_of(const DrawnElements& drawn)
+{
+    FigureElements elements{.scale_bar = drawn.has_scale_bar,
+                            .color_bar = drawn.has_color_bar,
+                            .legend = drawn.has_legend,
+                            .axes = drawn.has_axes,
+                            .title = drawn.title};
+    for (const TextInFigure& text : drawn.texts) elements.texts.push_back({text.voxel, text.text});
+    return elements;
+}
+
 FigureTask task_of(const FigureForm& form, const std::filesystem::path& folder)
 {
-    FigureForm complete = form;
-    add_text(complete);  // a text that was typed is meant, also without Add
-    FigureTask task = complete.more;
+    FigureTask task = form.more;
+    task.elements = elements_of(form.elements);
     task.path = placed(form.path, folder);
     task.pixels = pixels_of(form.size);
     task.dots_per_inch = form.size.is_in_mm ? form.size.dots_per_inch : 0.0;

@@ -8,6 +8,7 @@
 
 #include "engine/workbench/actions/picture_actions.h"
 #include "engine/workbench/models/model.h"
+#include "engine/workbench/sight/figure_elements.h"
 #include "engine/workbench/sight/print_size.h"
 
 namespace shvr::ui {
@@ -23,19 +24,31 @@ glm::ivec2 pixels_of(const SizeForm& form);
 /// Changes the unit and keeps the pixels.
 void change_unit(SizeForm& form, bool is_in_mm);
 
+/// What is drawn over a figure, or over each frame of a movie.
+struct ElementsForm {
+    DrawnElements drawn;
+    std::string next_text;        ///< typed, not yet among the texts
+    glm::dvec3 probe_voxel{0.0};  ///< where the next text is put
+};
+/// Returns the choices of `last` without its words, with the probe of the present view.
+ElementsForm suggested_elements(const Model& model, const ElementsForm& last);
+/// Adds the typed text, at the probe, to those that are drawn.
+void add_text(ElementsForm& form);
+/// Returns what is drawn. A text that was typed is meant, also without Add.
+DrawnElements elements_of(const ElementsForm& form);
+/// Returns the elements of a task as they are drawn.
+FigureElements elements_of(const DrawnElements& drawn);
+
 struct FigureForm {
     std::string path;  ///< as typed
     SizeForm size;
-    FigureTask more{.has_scale_bar = true};  ///< what is drawn
-    std::string next_text;                   ///< typed, not yet among the texts
-    glm::dvec3 probe_voxel{0.0};             ///< where the next text is put
+    FigureTask more;  ///< what has no field of its own here
+    ElementsForm elements{.drawn = {.has_scale_bar = true}};
 };
 
 /// Returns a form for the present view, with a name next to the scan, and the picture's shape. `last`: choices to use
 /// again.
 FigureForm suggested_figure(const Model& model, const FigureForm& last);
-/// Adds the typed text, at the probe, to those that are drawn.
-void add_text(FigureForm& form);
 std::string why_not(const FigureForm& form);
 /// `folder`: where relative names lie.
 FigureTask task_of(const FigureForm& form, const std::filesystem::path& folder);

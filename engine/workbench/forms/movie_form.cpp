@@ -26,6 +26,7 @@ MovieForm suggested_movie(const Model& model, const MovieForm& last)
     MovieForm form = last;
     form.path = form.suggested = base_of(model).string() + "-movie";
     choose_kind(form, last.kind);
+    form.elements = suggested_elements(model, last.elements);
     const std::vector<std::string> names = camera_names(model.session);
     std::erase_if(form.views, [&](const std::string& view) { return std::ranges::find(names, view) == names.end(); });
     return form;
@@ -41,6 +42,7 @@ void choose_kind(MovieForm& form, MovieKind kind)
 
 std::string why_not(const MovieForm& form)
 {
+    if (trimmed(form.path).empty()) return "no name is given; expected that of a file, or of a folder for frames";
     if (form.goes_through_views && form.views.size() < 2)
         return "no way is chosen; expected at least two views to go through";
     const double frames = std::round(form.seconds * form.more.frames_per_second);
@@ -59,6 +61,8 @@ MovieTask task_of(const MovieForm& form, const std::filesystem::path& folder)
 {
     MovieTask task = form.more;
     task.path = placed(form.path, folder);
+    if (form.kind != MovieKind::frames && !is_movie_file(task.path)) task.path += ending_of(form.kind);
+    task.elements = elements_of(form.elements);
     task.views.clear();
     if (form.goes_through_views)
         for (const std::string& view : form.views) task.views += (task.views.empty() ? "" : "\n") + view;

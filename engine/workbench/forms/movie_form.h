@@ -1,11 +1,12 @@
 #pragma once
-// The dialog Movie: degrees or views, seconds, frames per second, size, and the file. Pure, except
-// for check and replaced_files, which read the disk; any thread.
+// The dialog Movie: degrees or views, seconds, frames per second, size, what is drawn over its frames, and the file.
+// Pure, except for check and replaced_files, which read the disk; any thread.
 
 #include <string>
 #include <vector>
 
 #include "engine/workbench/actions/picture_actions.h"
+#include "engine/workbench/forms/figure_form.h"
 #include "engine/workbench/models/model.h"
 
 namespace shvr::ui {
@@ -21,6 +22,7 @@ struct MovieForm {
     std::vector<std::string> views;  ///< in their order
     double seconds = 4.0;
     MovieTask more{.pixels = {1280, 720}};
+    ElementsForm elements;
 };
 
 /// Returns a form for the present view, with a name next to the scan. `last`: choices to use again.

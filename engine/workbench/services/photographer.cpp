@@ -9,6 +9,7 @@
 #include "engine/session/picture_session.h"
 #include "engine/session/words/number_words.h"
 #include "engine/workbench/desk/declined.h"
+#include "engine/workbench/forms/figure_form.h"
 #include "engine/workbench/lists/group_list.h"
 #include "engine/workbench/models/preferences.h"
 #include "engine/workbench/sight/print_size.h"
@@ -182,14 +183,8 @@ void Photographer::act(const FigureTask& task)
     const std::filesystem::path path = task.is_copied ? path_for_clipboard() : task.path;
     Session session = session_of_pictures(pixels_of(task.pixels));
     if (task.is_transparent) session.render.background.a = 0.0;
-    FigureElements elements{.scale_bar = task.has_scale_bar,
-                            .color_bar = task.has_color_bar,
-                            .legend = task.has_legend,
-                            .axes = task.has_axes,
-                            .title = task.title};
-    for (const TextInFigure& text : task.texts) elements.texts.push_back({text.voxel, text.text});
     std::vector<std::string> left_out;
-    Figure figure = drawn_elements(elements, session, document_->camera, left_out);
+    Figure figure = drawn_elements(elements_of(task.elements), session, document_->camera, left_out);
     PictureTexts texts =
         shvr::texts_of_picture(session, document_->camera, path, project_of_pictures(), PictureProbe::none);
     if (task.dots_per_inch > 0.0) texts.emplace_back(PICTURE_DPI, digits_of(task.dots_per_inch));
@@ -213,17 +208,21 @@ void Photographer::act(const MovieTask& task)
         views.push_back({name, session, camera_named(session, name, document_->volume())});
     if (views.empty()) views.push_back({"the present view", session, document_->camera});
     Movie movie(std::move(views), task.turntable_degrees, task.frames, document_->volume());
-    const FigureElements elements{.scale_bar = task.has_scale_bar};
+    const FigureElements elements = elements_of(task.elements);
+    std::string said = sentence("A movie of ", counted(task.frames, "frame"), " is drawn in the background");
+    std::vector<std::string> left_out;
+    static_cast<void>(drawn_elements(elements, session, movie.frame(0).camera, left_out));
+    for (const std::string& each : left_out) said += "; " + each;
     const auto figure = [this, elements, session](const Camera& camera) {
-        std::vector<std::string> left_out;
-        return drawn_elements(elements, session, camera, left_out);
+        std::vector<std::string> ignored;
+        return drawn_elements(elements, session, camera, ignored);
     };
     const auto texts = [this, session](const Camera& camera, const std::filesystem::path& frame) {
         return shvr::texts_of_picture(session, camera, frame, project_of_pictures(), PictureProbe::none);
     };
     screenshots_.take(std::make_unique<MovieShot>(task.path, std::move(movie), task.frames_per_second, renderer_,
                                                   RenderOptions{.part_pixels = PART_PIXELS}, figure, texts));
-    say(sentence("A movie of ", counted(task.frames, "frame"), " is drawn in the background"));
+    say(std::move(said), left_out.empty() ? Weight::done : Weight::warning);
 }
 
 /// Returns the marks to draw over a picture `scale` times as large as the window; empty if the user wants no marks.

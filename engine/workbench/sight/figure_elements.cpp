@@ -114,7 +114,8 @@ private:
             lines.push_back(
                 {{0.5 * size_.x, 0.5 * edge_ + TITLE_STEP * line_ * double(i)}, {0.5, 0.0}, fitted.lines[i]});
         drawn_.write(lines, height);
-        drawn_.take({{0.0, 0.0}, {size_.x, bottom}});
+        const double half = 0.5 * drawn_.widest_of(fitted.lines, height);
+        drawn_.take({{0.5 * size_.x - half, 0.0}, {0.5 * size_.x + half, bottom}});
         below_title_ = bottom + 0.5 * line_;
     }
 
@@ -251,19 +252,26 @@ private:
                 sentence("the text ", in_quotes(text.text), " is left out: its point is outside of the picture"));
         const double radius = 0.2 * line_;
         drawn_.line(at->pixel, at->pixel + glm::dvec2(0.01, 0.0), drawn_.ink(), 2.0 * radius);
-        // To the left of the point where the right side has less room, and on the other side if something is there.
+        // To the left of the point where the right side has less room; on the other side, or above or below, if
+        // something is there.
         const bool is_right = at->pixel.x < 0.5 * size_.x;
-        if (!write_beside(text.text, at->pixel, radius + 0.3 * line_, is_right, true) &&
-            !write_beside(text.text, at->pixel, radius + 0.3 * line_, !is_right, true))
-            write_beside(text.text, at->pixel, radius + 0.3 * line_, is_right, false);
+        for (const double lines : {0.0, 1.0, -1.0, 2.0, -2.0, 3.0, -3.0, 4.0, -4.0}) {
+            const glm::dvec2 place = at->pixel + glm::dvec2(0.0, lines * line_);
+            for (const bool right : {is_right, !is_right})
+                if (write_beside(text.text, place, radius + 0.3 * line_, right, true)) return;
+        }
+        write_beside(text.text, at->pixel, radius + 0.3 * line_, is_right, false);
     }
-    /// Returns whether the text was written. `if_free`: only if it can be written in full, and hides no element.
+    /// Returns whether the text was written: moved up or down into the picture, if it would leave that. `if_free`: only
+    /// if it can be written in full, and hides no element.
     bool write_beside(const std::string& text, const glm::dvec2& at, double distance, bool is_right, bool if_free)
     {
         const double room = (is_right ? size_.x - at.x : at.x) - distance;
         const FittedLines fitted = lines_of(text, room, line_, MAX_TEXT_LINES, drawn_.draw_texts());
         std::vector<Words> lines;
-        Box box{at + glm::dvec2(is_right ? distance : -distance, -0.5 * line_ * double(fitted.lines.size())), {}};
+        const double height = line_ * double(fitted.lines.size());
+        Box box{at + glm::dvec2(is_right ? distance : -distance, -0.5 * height), {}};
+        box.begin.y = std::max(std::min(box.begin.y, size_.y - height), 0.0);
         for (const std::string& line : fitted.lines)
             lines.push_back(
                 {box.begin + glm::dvec2(0.0, line_ * double(lines.size())), {is_right ? 0.0 : 1.0, 0.0}, line});
@@ -275,6 +283,8 @@ private:
         if (!is_whole)
             left_out_.push_back(sentence("the text ", in_quotes(text), lines.empty() ? " is left out" : " is shortened",
                                          ": the picture is too small for it"));
+        else if (!if_free)
+            left_out_.push_back(sentence("the text ", in_quotes(text), " covers another element: no place is free"));
         drawn_.write(lines, line_);
         drawn_.take(box);
         return true;

@@ -41,7 +41,7 @@ struct FigureScene {
     std::span<const uint8_t> groups;
 };
 /// Title, legend, colour bar, texts and axes are drawn in the first pane. No element is drawn over another, except for
-/// texts with no free place on either side of their points. Line ends in title and texts begin new lines. `left_out`:
+/// texts with no free place near their points. Line ends in title and texts begin new lines. `left_out`:
 /// receives a sentence for each element that is left out or shortened, with the reason.
 Figure figure_of(const FigureElements& elements, const FigureScene& scene, const TextDrawer& draw_texts,
                  std::vector<std::string>& left_out);

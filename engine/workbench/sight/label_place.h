@@ -1,7 +1,11 @@
 #pragma once
-// Where a label is put next to a line, so that its text does not cross the line. Pure; any thread.
+// Where labels are put: next to a line, so that their text does not cross it; and apart from each other. Pure; any
+// thread.
 
 #include <cmath>
+#include <optional>
+#include <span>
+#include <utility>
 
 #include <glm/glm.hpp>
 
@@ -10,7 +14,28 @@ namespace shvr::ui {
 struct LabelPlace {
     glm::dvec2 at{0.0};      ///< pixels of the pane
     glm::dvec2 anchor{0.0};  ///< point of the text that is placed at `at`; 0, 0: upper left corner; 1, 1: lower right
+    /// From the point that the label belongs to towards `at`. The label may be moved along it and to its other side; 0:
+    /// the label stays.
+    glm::dvec2 away{0.0};
 };
+
+/// Returns the part of a line that lies in the pane; null if it has none.
+std::optional<std::pair<glm::dvec2, glm::dvec2>> part_in_pane(const glm::dvec2& from, const glm::dvec2& to,
+                                                              const glm::dvec2& pane);
+
+/// A line that labels avoid, though less than each other.
+struct LabelLine {
+    glm::dvec2 from{0.0}, to{0.0};
+};
+
+/// Moves labels that may be moved, so that they lie within the pane and cover no other label: in order, after all
+/// labels that stay, on either side of their points, near these, and off the lines where that is not far. Where there
+/// is no free place, a label covers as little as possible. `sizes`: of the texts, with their margins, in pixels.
+void spread(std::span<LabelPlace> labels, std::span<const glm::dvec2> sizes, const glm::dvec2& pane,
+            std::span<const LabelLine> lines = {});
+/// Returns a line from a label's point to the label if that lies so far away that it may be taken for another one's;
+/// null if it is near. `before`: before the label was moved.
+std::optional<LabelLine> leader_of(const LabelPlace& before, const LabelPlace& after, const glm::dvec2& size);
 
 /// Returns the place next to the middle of a line, on the side away from `centre`, or above the line if it goes through
 /// `centre`. The whole text is on that side, whatever its size. `units`: pixels per unit of the interface.
@@ -24,7 +49,7 @@ inline LabelPlace place_next_to(const glm::dvec2& from, const glm::dvec2& to, co
     const double away = glm::dot(middle - centre, side);
     if (std::abs(away) > units ? away < 0.0 : side.y > 0.0) side = -side;
     const auto anchor = [](double part) { return std::abs(part) < LEVEL_SINE ? 0.5 : part > 0.0 ? 0.0 : 1.0; };
-    return {middle + GAP * units * side, {anchor(side.x), anchor(side.y)}};
+    return {middle + GAP * units * side, {anchor(side.x), anchor(side.y)}, GAP * units * side};
 }
 
 }  // namespace shvr::ui

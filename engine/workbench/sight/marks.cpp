@@ -61,8 +61,8 @@ public:
         if (is_for_screen_) clip_box();
         if (is_for_screen_) oblique_plane();
         if (is_for_screen_) drawn_tool();
-        if (is_for_screen_) link();
         measurements();
+        if (is_for_screen_) link();
         if (is_for_screen_) pivot();
         if (model_.session.interaction.axes) axes();
         if (model_.session.interaction.scale_bar) scale();
@@ -100,7 +100,11 @@ private:
     }
     void closed(const std::vector<glm::dvec2>& points, const glm::dvec3& color, double width = 1.5)
     {
-        for (size_t i = 0; i < points.size(); ++i) line(points[i], points[(i + 1) % points.size()], color, width);
+        // All of the halo first, else it would lie on the corners of the side before.
+        for (const bool is_halo : {true, false})
+            for (size_t i = 0; i < points.size(); ++i)
+                marks_.strokes.push_back({points[i], points[(i + 1) % points.size()], is_halo ? DARK : color,
+                                          (is_halo ? width + 2.0 : width) * units_});
     }
     void ring(const glm::dvec2& middle, double radius, const glm::dvec3& color, double width = 1.5)
     {
@@ -255,8 +259,10 @@ private:
     void label_line(const glm::dvec2& from, const glm::dvec2& to, const glm::dvec2& centre, std::string text,
                     const glm::dvec3& color)
     {
-        const LabelPlace place = place_next_to(from, to, centre, units_);
-        label(place.at, place.anchor, std::move(text), color);
+        const auto seen = part_in_pane(from, to, pixels_);
+        if (!seen) return;
+        const LabelPlace place = place_next_to(seen->first, seen->second, centre, units_);
+        marks_.labels.push_back({place.at, place.anchor, std::move(text), color, place.away});
     }
 
     /// Draws a measurement's sides and points, with `text` next to a side. `is_open`: its last side is not set yet.
@@ -274,8 +280,9 @@ private:
                 dashed(*from, *to, MEASURED);
             else
                 line(*from, *to, MEASURED, 2.0);
+            marks_.lines.push_back({*from, *to});
             for (const glm::dvec2& at : {*from, *to}) ring(at, 3.5 * units_, MEASURED);
-            if (!labelled || i == points.size() / 2) labelled = {*from, *to};
+            if (part_in_pane(*from, *to, pixels_) && (!labelled || i == points.size() / 2)) labelled = {*from, *to};
             sum += *from + *to;
             ++sides;
         }
@@ -351,6 +358,7 @@ private:
             const glm::dvec2 way(glm::dot(direction, axes_.right), -glm::dot(direction, axes_.up));
             if (glm::length(way) < 0.05) continue;
             line(middle, middle + length * way, AXES[axis]);
+            marks_.lines.push_back({middle, middle + length * way});
             label(middle + (length + 8.0 * units_) * way, {0.5, 0.5}, std::string(1, "xyz"[axis]));
         }
     }
@@ -368,6 +376,7 @@ private:
         const glm::dvec2 begin = end - glm::dvec2(bar.pixels, 0.0), rim(units_, 0.0);
         marks_.strokes.push_back({begin - rim, end + rim, rim_color(ink()), 5.0 * units_});
         marks_.strokes.push_back({begin, end, ink(), 3.0 * units_});
+        marks_.lines.push_back({begin, end});
         label(end - glm::dvec2(0.0, 5.0 * units_), {1.0, 1.0},
               bar.text + (is_perspective ? " at the middle of the view" : ""));
     }
@@ -463,6 +472,32 @@ glm::dvec3 rim_color(const glm::dvec3& ink)
 double rim_width(double font_pixels)
 {
     return std::max(1.0, std::round(font_pixels / 12.0));
+}
+
+void spread_labels(Marks& marks, std::span<const glm::dvec2> text_sizes, const glm::dvec2& margin,
+                   const glm::dvec2& pane)
+{
+    std::vector<LabelPlace> places;
+    std::vector<glm::dvec2> sizes;
+    for (size_t i = 0; i < marks.labels.size(); ++i) {
+        const Label& label = marks.labels[i];
+        sizes.push_back(text_sizes[i] + 2.0 * margin);
+        // With the margin, the anchor's point moves outwards.
+        places.push_back({label.at + (2.0 * label.anchor - 1.0) * margin, label.anchor, label.away});
+    }
+    const std::vector<LabelPlace> before = places;
+    spread(places, sizes, pane, marks.lines);
+    for (size_t i = 0; i < marks.labels.size(); ++i) {
+        Label& label = marks.labels[i];
+        if (label.away == glm::dvec2(0.0)) continue;
+        label.at = places[i].at - (2.0 * places[i].anchor - 1.0) * margin;
+        label.anchor = places[i].anchor;
+        const auto leader = leader_of(before[i], places[i], sizes[i]);
+        if (!leader) continue;
+        const double width = std::max(1.0, sizes[i].y / 16.0);
+        marks.strokes.push_back({leader->from, leader->to, rim_color(label.color), 3.0 * width});
+        marks.strokes.push_back({leader->from, leader->to, label.color, width});
+    }
 }
 
 Marks marks_of(const Model& model, const Pane& pane, size_t index, double units, MarksFor purpose)

@@ -313,14 +313,14 @@ TEST_CASE("a figure is suggested next to the scan, in the ending of the last one
     world.model.probe_voxel = glm::dvec3(1.0, 2.0, 3.0);
     FigureForm form = suggested_figure(world.model, {.path = "/else/a.tif"});
     CHECK(form.path == "/scans/leaf-figure.tif");
-    form.next_text = "pith";
+    form.elements.next_text = "pith";
     const FigureTask task = task_of(form, "/scans");
     CHECK(task.path == "/scans/leaf-figure.tif");
-    CHECK(task.has_scale_bar);
+    CHECK(task.elements.has_scale_bar);
     CHECK(task.dots_per_inch == 300.0);
-    REQUIRE(task.texts.size() == 1);
-    CHECK(task.texts[0].text == "pith");
-    CHECK(task.texts[0].voxel == world.model.probe_voxel);
+    REQUIRE(task.elements.texts.size() == 1);
+    CHECK(task.elements.texts[0].text == "pith");
+    CHECK(task.elements.texts[0].voxel == world.model.probe_voxel);
     form.size.is_in_mm = false;
     CHECK(task_of(form, "/scans").dots_per_inch == 0.0);
     CHECK(why_not(form).empty());
@@ -331,14 +331,16 @@ TEST_CASE("a figure is suggested next to the scan, in the ending of the last one
 TEST_CASE("a figure and a movie come back from their lines, and say what they cannot be")
 {
     Scanned world;
-    FigureTask figure{.path = "/a/b.png", .pixels = {10, 20}, .has_axes = true};
-    figure.texts.push_back({{1.0, 2.0, 3.0}, "pith"});
+    FigureTask figure{.path = "/a/b.png", .pixels = {10, 20}, .elements = {.has_axes = true}};
+    figure.elements.texts.push_back({{1.0, 2.0, 3.0}, "pith"});
     const Action read = read_action(line_of(Action(figure)), "line");
     CHECK(line_of(read) == line_of(Action(figure)));
-    CHECK(read.as<FigureTask>()->texts[0].text == "pith");
+    CHECK(read.as<FigureTask>()->elements.texts[0].text == "pith");
     figure.path = "/a/b.jpg";
     CHECK(why_not(world.model, Action(figure)) ==
           "the figure's name is \"b.jpg\"; expected one that ends in .png or .tif");
+    const MovieTask titled{.path = "/a/m.webm", .elements = {.has_color_bar = true, .title = "leaf"}};
+    CHECK(read_action(line_of(Action(titled)), "line").as<MovieTask>()->elements.title == "leaf");
     const MovieTask still{.path = "/a/m.webm"};
     CHECK(why_not(world.model, Action(still)).find("stands still") != std::string::npos);
     CHECK(why_not(world.model, Action(MovieTask{.path = "/a/m.webm", .turntable_degrees = 360.0})).empty());

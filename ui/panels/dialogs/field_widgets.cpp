@@ -282,7 +282,9 @@ void size_dialog()
 {
     const float width =
         (NAME_COLUMN + VALUE_WIDTH + 4.0f) * ImGui::GetFontSize() + 4.0f * ImGui::GetStyle().WindowPadding.x;
-    ImGui::SetNextWindowSize({std::min(width, ImGui::GetMainViewport()->WorkSize.x), 0.0f});
+    const ImVec2 room = ImGui::GetMainViewport()->WorkSize;
+    ImGui::SetNextWindowSize({std::min(width, room.x), 0.0f});
+    ImGui::SetNextWindowSizeConstraints({0.0f, 0.0f}, room);  // a longer dialog scrolls
     ImGui::SetNextWindowScroll({0.0f, -1.0f});
 }
 

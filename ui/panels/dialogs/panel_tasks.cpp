@@ -102,7 +102,7 @@ public:
         const std::string why = refusal(model, task);
         const bool is_replaced = why.empty() && !known_.replacement.empty();
         dialog_note(about(form_, model, known_.scan), is_replaced ? known_.replacement : why);
-        if (ends(task, why, has_chooser, actions) || model.dialog != dialog_) {
+        if (ends(task, why, has_chooser, model, actions) || model.dialog != dialog_) {
             ImGui::CloseCurrentPopup();
             is_shown_ = false;
             if (model.dialog == dialog_) actions.push_back(ShowDialog{});
@@ -113,7 +113,7 @@ public:
 
 private:
     /// Draws the buttons. Returns whether the dialog ends, with the task among the actions if it was confirmed.
-    bool ends(const Task& task, const std::string& why, bool has_chooser, Actions& actions)
+    bool ends(const Task& task, const std::string& why, bool has_chooser, const Model& model, Actions& actions)
     {
         const ImVec2 button{6.0f * ImGui::GetFontSize(), 0.0f};
         // Enter waits for the disk's answer to what was typed before it.
@@ -126,18 +126,20 @@ private:
         ImGui::SameLine();
         const bool is_cancelled = ImGui::Button("Cancel", button) ||
                                   (!has_chooser && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)));
-        return copies(task, actions) || is_cancelled || is_confirmed;
+        return copies(task, model, actions) || is_cancelled || is_confirmed;
     }
     /// Draws the button of figures that puts them into the clipboard. Returns whether it was pressed.
-    bool copies(const Task& task, Actions& actions) const
+    bool copies(const Task& task, const Model& model, Actions& actions) const
     {
         if constexpr (std::is_same_v<Form, FigureForm>) {
             ImGui::SameLine();
-            const std::string wrong = refused_number();
-            if (copy_button(wrong.empty() ? why_not(form_) : wrong)) {
-                FigureTask copy = task;
-                copy.is_copied = true;
-                copy.path.clear();
+            FigureTask copy = task;
+            copy.is_copied = true;
+            copy.path.clear();
+            std::string wrong = refused_number();
+            if (wrong.empty()) wrong = why_not(form_);
+            if (wrong.empty()) wrong = why_not(model, Action(copy));
+            if (copy_button(wrong)) {
                 actions.push_back(copy);
                 return true;
             }

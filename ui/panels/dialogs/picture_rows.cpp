@@ -14,6 +14,7 @@
 #include "engine/workbench/forms/form_names.h"
 #include "ui/files/asked.h"
 #include "ui/panels/dialogs/field_widgets.h"
+#include "ui/panels/dialogs/figure_preview.h"
 #include "ui/panels/number_field.h"
 #include "ui/panels/widgets.h"
 
@@ -73,23 +74,26 @@ void size_rows(SizeForm& size)
     hint("Journals ask for 300 or more.");
 }
 
-void elements_row(FigureTask& task)
+void elements_rows(DrawnElements& drawn)
 {
     field_name("Draw");
-    ImGui::Checkbox("Scale bar", &task.has_scale_bar);
+    ImGui::Checkbox("Scale bar", &drawn.has_scale_bar);
     hint("A line of a rounded length; in perspective, it names the plane in which it holds.");
     ImGui::SameLine();
-    ImGui::Checkbox("Colour bar", &task.has_color_bar);
+    ImGui::Checkbox("Colour bar", &drawn.has_color_bar);
     hint("Colours and opacity of the transfer function, with intensities.");
     ImGui::SameLine();
-    ImGui::Checkbox("Legend", &task.has_legend);
+    ImGui::Checkbox("Legend", &drawn.has_legend);
     hint("Colours and names of the groups that are painted or traced.");
     ImGui::SameLine();
-    ImGui::Checkbox("Axes", &task.has_axes);
+    ImGui::Checkbox("Axes", &drawn.has_axes);
     hint("Directions of x, y and z.");
+    field_name("Title");
+    want_glyphs(drawn.title);
+    ImGui::InputTextWithHint("##title", "none", &drawn.title);
 }
 
-void text_rows(FigureForm& form)
+void text_rows(ElementsForm& form)
 {
     field_name("Label");
     ImGui::SetNextItemWidth(21.0f * ImGui::GetFontSize());
@@ -98,15 +102,16 @@ void text_rows(FigureForm& form)
     ImGui::SameLine();
     if (ImGui::Button("Add")) add_text(form);
     hint("Keeps the label, so that another one can be typed.");
-    for (size_t i = 0; i < form.more.texts.size(); ++i) {
+    std::vector<TextInFigure>& texts = form.drawn.texts;
+    for (size_t i = 0; i < texts.size(); ++i) {
         ImGui::PushID(int(i));
         field_name("");
-        want_glyphs(form.more.texts[i].text);
+        want_glyphs(texts[i].text);
         const bool is_removed = ImGui::SmallButton("Remove");
         ImGui::SameLine();
-        ImGui::TextUnformatted(form.more.texts[i].text.c_str());
+        ImGui::TextUnformatted(texts[i].text.c_str());
         ImGui::PopID();
-        if (is_removed) form.more.texts.erase(form.more.texts.begin() + std::ptrdiff_t(i--));
+        if (is_removed) texts.erase(texts.begin() + std::ptrdiff_t(i--));
     }
 }
 
@@ -189,15 +194,13 @@ bool draw_form(FigureForm& form, const Model& model, const KnownScan&, bool begi
     const bool has_chooser = path_chooser_is_open();
     path_row("File", form.path, ".png or .tif", base_of(model).parent_path() / "", begins);
     size_rows(form.size);
-    elements_row(form.more);
-    field_name("Title");
-    want_glyphs(form.more.title);
-    ImGui::InputTextWithHint("##title", "none", &form.more.title);
+    elements_rows(form.elements.drawn);
     if (more_heading()) {
         field_name("Background");
         ImGui::Checkbox("Transparent", &form.more.is_transparent);
-        text_rows(form);
+        text_rows(form.elements);
     }
+    figure_preview(task_of(form, base_of(model).parent_path()), model, begins);
     return has_chooser;
 }
 
@@ -215,10 +218,8 @@ bool draw_form(MovieForm& form, const Model& model, const KnownScan&, bool begin
     ImGui::SameLine();
     narrow_field("##height", form.more.pixels.y);
     words_after("pixels");
-    if (more_heading()) {
-        field_name("Draw");
-        ImGui::Checkbox("Scale bar", &form.more.has_scale_bar);
-    }
+    elements_rows(form.elements.drawn);
+    if (more_heading()) text_rows(form.elements);
     return has_chooser;
 }
 
