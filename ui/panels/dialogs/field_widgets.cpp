@@ -288,6 +288,14 @@ void size_dialog()
     ImGui::SetNextWindowScroll({0.0f, -1.0f});
 }
 
+void keep_dialog_on_screen()
+{
+    const ImGuiViewport& screen = *ImGui::GetMainViewport();
+    const ImVec2 at = ImGui::GetWindowPos();
+    const float top = std::max(screen.WorkPos.y + screen.WorkSize.y - ImGui::GetWindowHeight(), screen.WorkPos.y);
+    if (at.y > top) ImGui::SetWindowPos({at.x, top});
+}
+
 bool more_heading()
 {
     return ImGui::TreeNodeEx("More", ImGuiTreeNodeFlags_NoTreePushOnOpen | ImGuiTreeNodeFlags_SpanAvailWidth);
