@@ -288,11 +288,10 @@ void size_dialog()
     ImGui::SetNextWindowScroll({0.0f, -1.0f});
 }
 
-void keep_dialog_on_screen()
+void keep_above(float lower_edge)
 {
-    const ImGuiViewport& screen = *ImGui::GetMainViewport();
     const ImVec2 at = ImGui::GetWindowPos();
-    const float top = std::max(screen.WorkPos.y + screen.WorkSize.y - ImGui::GetWindowHeight(), screen.WorkPos.y);
+    const float top = std::max(lower_edge - ImGui::GetWindowHeight(), ImGui::GetMainViewport()->WorkPos.y);
     if (at.y > top) ImGui::SetWindowPos({at.x, top});
 }
 

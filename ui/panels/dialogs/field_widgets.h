@@ -30,8 +30,8 @@ bool path_chooser_is_open();
 
 /// Call before the Begin of a dialog with rows: gives it a width that holds them.
 void size_dialog();
-/// Moves the present window up if it has grown out of the screen, as by more rows. Inside the window.
-void keep_dialog_on_screen();
+/// Moves the present window up if it has grown beyond a height of the screen, as by more rows. Inside the window.
+void keep_above(float lower_edge);
 /// Draws the heading More; returns whether what is below it is shown.
 bool more_heading();
 /// Draws what a dialog says below its rows: `failure` in the colour of warnings instead of `about`, if there is one.

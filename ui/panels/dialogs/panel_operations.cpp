@@ -166,14 +166,6 @@ void apply(const GroupOperation& operation, const std::string& line, Actions& ac
     outline_tool().clear();
 }
 
-/// Moves the window up if it has grown out of the screen, as by an operation with more rows. Inside the window.
-void keep_on_screen(float lower_edge)
-{
-    const ImVec2 at = ImGui::GetWindowPos();
-    const float top = std::max(lower_edge - ImGui::GetWindowHeight(), ImGui::GetMainViewport()->WorkPos.y);
-    if (at.y > top) ImGui::SetWindowPos({at.x, top});
-}
-
 void follow_preview(const Model& model, const std::string& line, bool is_possible, Actions& actions)
 {
     const std::string wanted = state.shows_preview && is_possible && line != state.applied ? line : std::string();
@@ -217,7 +209,7 @@ void operations_window(const Model& model, Actions& actions)
     point_tool().set_on(is_drawn && awaits_click(state.operations[state.chosen]));
     outline_tool().set_on(is_drawn && std::holds_alternative<LassoOp>(state.operations[state.chosen]));
     if (is_drawn) {
-        keep_on_screen(lower_edge);
+        keep_above(lower_edge);
         const OutlineTool::Wish wish = outline_tool().take_wish();
         if (wish == OutlineTool::Wish::cancel) outline_tool().clear();
         draw_operation(state.operations[state.chosen], model);

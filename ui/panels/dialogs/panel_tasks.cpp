@@ -102,7 +102,8 @@ public:
         const std::string why = refusal(model, task);
         const bool is_replaced = why.empty() && !known_.replacement.empty();
         dialog_note(about(form_, model, known_.scan), is_replaced ? known_.replacement : why);
-        keep_dialog_on_screen();
+        const ImGuiViewport& screen = *ImGui::GetMainViewport();
+        keep_above(screen.WorkPos.y + screen.WorkSize.y);
         if (ends(task, why, has_chooser, model, actions) || model.dialog != dialog_) {
             ImGui::CloseCurrentPopup();
             is_shown_ = false;
