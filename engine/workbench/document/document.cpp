@@ -101,6 +101,7 @@ Document::Document(Renderer& renderer, Read read, const View::Options& view_opti
     : session_path(std::move(read.session_path)),
       session(std::move(read.opened.session)),
       source(std::move(read.opened.source)),
+      scene_source(source),
       statistics(read.opened.statistics),
       camera(camera_named(session, session.camera_name, source->info())),
       annotator(renderer, std::move(read.work)),
@@ -172,7 +173,7 @@ void Document::keep_settings()
 
 void Document::load_again(Renderer& renderer)
 {
-    renderer.load(source, statistics, session.render, shows_occlusion(session.light));
+    renderer.load(scene_source, statistics, session.render, shows_occlusion(session.light));
     show_again(renderer);
 }
 

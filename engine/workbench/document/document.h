@@ -55,6 +55,8 @@ struct Document {
     std::filesystem::path session_path;  ///< where the session is saved
     Session session;                     ///< includes the probe's thresholds: the file's, or ones chosen for the volume
     std::shared_ptr<const VolumeSource> source;
+    /// What the scene is made of: `source`, with coarser levels if the settings for which it was loaded need them.
+    std::shared_ptr<const VolumeSource> scene_source;
     VolumeStatistics statistics;
     Camera camera;
     Annotator annotator;

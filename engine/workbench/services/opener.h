@@ -29,8 +29,7 @@ public:
         Call<void()> advance_jobs;
         Call<Leave(std::string& why)> leave;
         Call<bool()> is_saving;
-        Call<void()> cancel_reload;
-        Call<void()> forget_reload;
+        Call<bool()> cancel_reload;  ///< returns whether there was one
         Call<void(const char* by)> drop_screenshot;
         Call<void()> look_again;
         Call<void(const Camera&)> look_from;

@@ -124,7 +124,7 @@ void Opener::bring_back()
     const Session& session = away_->session;
     try {
         renderer_.take_scene();
-        opening_->scene = renderer_.begin_loading(away_->source, away_->statistics, session.render,
+        opening_->scene = renderer_.begin_loading(away_->scene_source, away_->statistics, session.render,
                                                   shows_occlusion(session.light), away_->annotator.document());
     } catch (const DeviceLost&) {
         throw;
@@ -146,15 +146,16 @@ void Opener::restart_device(const std::function<void()>& make_anew)
         document_->touch.drop_queries();
         document_->screen.drop();
     }
-    if (opening_) opening_->scene.reset();   // it is loaded again from its beginning
-    if (document_) others_.forget_reload();  // load_again() applies the current settings anyway
+    if (opening_) opening_->scene.reset();                            // it is loaded again from its beginning
+    const bool was_reloading = document_ && others_.cancel_reload();  // load_again() must not make coarser levels
     make_anew();
     others_.look_again();
     if (document_) load_again();  // or puts it away
     if (away_ && (!opening_ || opening_->comes_back)) bring_back();
     say(sentence("The graphics device stopped responding and was restarted; ",
                  was_painting && !document_ ? "the stroke being painted may be incomplete, all other work is intact"
-                                            : "all work is intact"),
+                                            : "all work is intact",
+                 was_reloading ? "; render.sampling and render.paging are again as the volume is loaded" : ""),
         Weight::warning);
 }
 

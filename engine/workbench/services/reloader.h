@@ -1,6 +1,11 @@
 #pragma once
-// Reloads the volume after changes of render.sampling or render.paging. The new scene is loaded in slices, while the
-// old scene stays on display. If the device has no room for both scenes and the document, the document is unloaded
+// Reloads the volume after changes of render.sampling or render.paging:
+//
+//   worker      coarser levels, if bricks will be paged and the volume has none
+//   main        loads the volume onto the device in slices          -> Scene
+//   main        replaces the scene
+//
+// Until the last step the old scene stays on display, and failures and cancellation restore its settings. If the device has no room for both scenes and the document, the document is unloaded
 // until the new scene is loaded, as when another document is opened.
 
 #include "engine/workbench/desk/service.h"
@@ -30,17 +35,21 @@ public:
     bool cancel();
     /// If the reload has the job number `number`, cancels the reload and returns true.
     bool cancel(Jobs::Number number);
-    /// Forgets the requested reload, since another operation loads the volume with the current settings anyway.
-    void forget() { reload_.reset(); }
-    /// Adds the state of the reload, if there is one.
+    /// If a finished job is the reading job of the reload, handles the job and returns true.
+    bool end_reading(const Jobs::Finished& job);
+    /// Adds the state of the reload, if there is one and its reading job is not running.
     void add_loading(std::vector<Jobs::State>& states) const;
 
 private:
     struct Reload;
+    std::string title() const;
+    void read();
     void begin();
     void load_alone();
     void show();
     void drop_queries();
+    void restore_settings();
+    void give_up(const std::string& why);
 
     const Others others_;
     std::shared_ptr<Reload> reload_;  ///< null: the scene on display matches the settings

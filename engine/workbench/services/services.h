@@ -96,8 +96,7 @@ struct Services {
                   {.advance_jobs = [this] { tasks.advance(); },
                    .leave = [this](std::string& why) { return saver.leave(why); },
                    .is_saving = [this] { return saver.is_saving(); },
-                   .cancel_reload = [this] { reloader.cancel(); },
-                   .forget_reload = [this] { reloader.forget(); },
+                   .cancel_reload = [this] { return reloader.cancel(); },
                    .drop_screenshot = [this](const char* by) { photographer.drop_large(by); },
                    .look_again = [this] { viewer.look_again(); },
                    .look_from = [this](const Camera& camera) { viewer.look_from(camera); },
@@ -122,25 +121,26 @@ struct Services {
                        .drop_screenshot = [this](const char* by) { photographer.drop_large(by); },
                        .note_edit = [this] { settings.note_edit(); },
                        .look_again = [this] { viewer.look_again(); }}};
-    TaskRunner tasks{
-        desk,
-        keeper,
-        {.end_save = [this](const Jobs::Finished& job) { saver.end(job); },
-         .end_reading =
-             [this](const Jobs::Finished& job) { return groups.ends_preview(job) || opener.end_reading(job); },
-         .cancel =
-             [this](Jobs::Number number) {
-                 return opener.cancel(number) || reloader.cancel(number) || photographer.cancel(number);
-             },
-         .add_loading =
-             [this](std::vector<Jobs::State>& states) {
-                 opener.add_loading(states);
-                 reloader.add_loading(states);
-                 photographer.add_loading(states);
-             },
-         .add_reading = [this](std::vector<Jobs::State>& states) { opener.add_read(states); },
-         .open = [this](const std::filesystem::path& path) { taker.act(Open{path}); },
-         .record_settings = [this] { settings.record_settings(); }}};
+    TaskRunner tasks{desk,
+                     keeper,
+                     {.end_save = [this](const Jobs::Finished& job) { saver.end(job); },
+                      .end_reading =
+                          [this](const Jobs::Finished& job) {
+                              return groups.ends_preview(job) || opener.end_reading(job) || reloader.end_reading(job);
+                          },
+                      .cancel =
+                          [this](Jobs::Number number) {
+                              return opener.cancel(number) || reloader.cancel(number) || photographer.cancel(number);
+                          },
+                      .add_loading =
+                          [this](std::vector<Jobs::State>& states) {
+                              opener.add_loading(states);
+                              reloader.add_loading(states);
+                              photographer.add_loading(states);
+                          },
+                      .add_reading = [this](std::vector<Jobs::State>& states) { opener.add_read(states); },
+                      .open = [this](const std::filesystem::path& path) { taker.act(Open{path}); },
+                      .record_settings = [this] { settings.record_settings(); }}};
     Saver saver{desk,
                 keeper,
                 {.begin_open = [this](const std::filesystem::path& path) { opener.begin_open(path, {}); },

@@ -89,8 +89,8 @@ class Figure(CliTest):
         # A text goes to the other side of its point where something is there.
         blank = self.picture()
         right = changed(blank, self.picture("--text", "11,12,12:abc"))
-        taken = self.picture("--text", "15,12,12:abc")
-        left = changed(taken, self.picture("--text", "15,12,12:abc", "--text", "11,12,12:abc"))
+        taken = self.picture("--text", "13,12,12:abc")
+        left = changed(taken, self.picture("--text", "13,12,12:abc", "--text", "11,12,12:abc"))
         self.assertTrue(right[2] > 60 and left[0] < 25 and left[2] < 48, (right, left))
 
     @staticmethod
@@ -109,7 +109,7 @@ class Figure(CliTest):
         for found, expected in zip((left, bottom), (40, SIDE - 40)):
             self.assertAlmostEqual(found, expected, delta=4)
         self.assertTrue(60 < right < 80 and 16 < top < SIDE - 60, (left, top, right, bottom))
-        # The dot is at the voxel, the text to its right in the left half, and to its left in the right half.
+        # The dot is at the voxel, the text to its right, or to its left where the right has no room.
         left, top, right, bottom = changed(blank, self.picture("--text", "6,12,18:stem"))
         self.assertTrue(21 <= left <= 23 and top < 24 < bottom and right > 35, (left, top, right, bottom))
         left, top, right, bottom = changed(blank, self.picture("--text", "18,12,18:stem"))

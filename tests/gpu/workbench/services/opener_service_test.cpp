@@ -25,8 +25,11 @@ struct OpenerAlone : DeskWithScan {
                            return may_leave;
                        },
                    .is_saving = [] { return false; },
-                   .cancel_reload = notes("cancel_reload"),
-                   .forget_reload = notes("forget_reload"),
+                   .cancel_reload =
+                       [this] {
+                           calls.emplace_back("cancel_reload");
+                           return false;
+                       },
                    .drop_screenshot = notes("drop_screenshot"),
                    .look_again = notes("look_again"),
                    .look_from = notes("look_from"),
