@@ -130,6 +130,7 @@ void App::follow_workbench()
         window_.set_title("SHVR");  // until the volume is visible
     }
     if (bench_->take_quit()) window_.close();
+    if (bench_->take_stay_open()) window_.stay_open();
     window_.set_full_screen(bench_->shows_full_screen());
     // The end of a job removes its progress, and may show a dialog.
     if (std::exchange(drew_jobs_, bench_->shows_jobs()) != bench_->shows_jobs()) keep_drawing(AFTERGLOW_S);

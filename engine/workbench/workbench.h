@@ -97,7 +97,7 @@ public:
     /// the view changed, saves it without a message. Read-only work is not saved, as a message has told the user
     /// before. While the user has not chosen between journal and changed files, the annotation stays in the journal.
     using Leave = ui::Leave;
-    Leave leave(std::string& why) { return services_.saver.leave(why); }
+    Leave leave(std::string& why) { return services_.saver.close(why); }
     bool is_saving() const { return services_.saver.is_saving(); }
     /// Notes that the window was to be closed, and stays open because of `why`, a reason that `leave` gave.
     void note_kept_open(const std::string& why) { services_.saver.note_kept_open(why); }
@@ -118,6 +118,8 @@ public:
     void wait_for_screenshots() const { services_.photographer.wait(); }
     /// Returns whether Quit was requested, and clears the request.
     bool take_quit() { return services_.saver.take_quit(); }
+    /// Likewise, whether closing the window was taken back.
+    bool take_stay_open() { return services_.saver.take_stay_open(); }
     /// Returns the part of the window that should get the keyboard focus, and clears the request; empty: no request.
     std::string take_focus() { return services_.window.take_focus(); }
     /// Returns the page that the browser should open, and clears the request; empty: no request.

@@ -94,6 +94,9 @@ struct Quit {
     bool saves = true;  ///< false: reverts the work to the last save, as one step, which can be undone
 };
 
+/// Takes back the wish to close the window, while that waits until files are written.
+struct StayOpen {};
+
 inline constexpr const char* WINDOW_GROUP = "Window";
 
 inline constexpr auto WINDOW_ACTIONS = std::tuple{
@@ -178,6 +181,11 @@ inline constexpr auto WINDOW_ACTIONS = std::tuple{
         [](auto& f, ShowFullScreen& a) { f.flag("on", a.on, {}); }),
     row<Quit, Saver>({"quit", "Quit", WINDOW_GROUP,
                       "saves the work, or returns to the last save, and closes the window", Needs::nothing},
-                     [](auto& f, Quit& a) { f.flag("saves", a.saves, {}); })};
+                     [](auto& f, Quit& a) { f.flag("saves", a.saves, {}); }),
+    row<StayOpen, Saver>({"stay_open", "Stay open", WINDOW_GROUP,
+                          "keeps the window open, while closing it waits until files are written", Needs::nothing},
+                         NO_FIELDS, [](const auto& model, const StayOpen&) -> std::string {
+                             return model.waits_to_close ? "" : "the window is not waiting to close";
+                         })};
 
 }  // namespace shvr::ui

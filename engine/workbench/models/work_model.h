@@ -54,6 +54,7 @@ struct SaveModel {
     bool is_trouble_of_folder = false;  ///< nothing can be written next to the session: only another folder helps
     bool is_kept = true;                ///< nothing would be lost if the program ended now, except settings
     bool kept_window_open = false;      ///< the window was to be closed, and was not because of this trouble
+    bool waits_to_close = false;        ///< the window closes once the jobs that write files have ended
 };
 
 }  // namespace shvr::ui

@@ -166,6 +166,12 @@ void Saver::end_save(const Jobs::Finished& job)
         (is_behind ? "; what was done since the save began is not in it" : ""));
 }
 
+Leave Saver::close(std::string& why)
+{
+    waits_to_close_ = others_.is_writing();
+    return leave(why);
+}
+
 Leave Saver::leave(std::string& why)
 {
     if (others_.is_writing()) {
@@ -242,6 +248,12 @@ void Saver::act(const Quit& action)
     quits_ = true;
 }
 
+void Saver::act(const StayOpen&)
+{
+    waits_to_close_ = quits_ = false;
+    stays_open_ = true;
+}
+
 // ---- The spacing ----------------------------------------------------------------------------------------------------
 
 /// Saves the new spacing in the session, then opens the session again, which converts positions in the journal.
@@ -276,13 +288,15 @@ void Saver::act(const CorrectSpacing& action)
 
 SaveModel Saver::model() const
 {
-    if (!document_) return {};
+    const bool waits_to_close = waits_to_close_ && others_.is_writing();
+    if (!document_) return {.waits_to_close = waits_to_close};
     const Work& work = document_->annotator.work();
     SaveModel model{.is_saved = document_->is_saved(),
                     .is_saving = is_saving(),
                     .is_saving_as = work.is_saving_as(),
                     .disputes = work.disputes(),
-                    .trouble = work.journal().failure};
+                    .trouble = work.journal().failure,
+                    .waits_to_close = waits_to_close};
     if (document_->only_looks()) return model;  // another notice says so
     if (model.trouble.empty()) model.trouble = trouble_;
     model.is_trouble_of_folder = !document_->unsavable.empty();

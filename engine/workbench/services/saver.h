@@ -38,6 +38,7 @@ public:
     void act(const WorkOnCopy& action);
     void act(const CorrectSpacing& action);
     void act(const Quit& action);
+    void act(const StayOpen& action);
 
     void advance() override;
     /// Forgets state of the previous document.
@@ -47,6 +48,8 @@ public:
     /// Handles a finished job of the worker thread that writes saves.
     void end(const Jobs::Finished& job);
     Leave leave(std::string& why);
+    /// The same for the window: while closing it waits until a file is written, the model says so.
+    Leave close(std::string& why);
     /// Notes that the window was to be closed, and stays open since work cannot be saved; the model says so until a
     /// save succeeds.
     void note_kept_open(const std::string& why);
@@ -57,6 +60,8 @@ public:
     void cancel_save();
     /// Returns whether Quit was requested, and clears the request.
     bool take_quit() { return std::exchange(quits_, false); }
+    /// Returns whether StayOpen was requested, and clears the request.
+    bool take_stay_open() { return std::exchange(stays_open_, false); }
     SaveModel model() const;
 
 private:
@@ -90,7 +95,8 @@ private:
     std::set<Jobs::Number> copies_;  ///< copies that a saver is writing
     bool told_of_writers_ = false;
     bool reopens_when_saved_ = false;  ///< with the session's new spacing
-    bool quits_ = false;
+    bool quits_ = false, stays_open_ = false;
+    bool waits_to_close_ = false;  ///< as in SaveModel
     Attempt saving_;
 };
 

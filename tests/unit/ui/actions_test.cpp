@@ -153,6 +153,7 @@ std::vector<Action> samples()
             FocusOn{"menu"},
             ShowFullScreen{false},
             Quit{},
+            StayOpen{},
             LetGo{true},
             GrabVolume{true},
             UseDevice{"hid:/dev/hidraw3"},

@@ -16,6 +16,8 @@ float end_banner();
 
 /// Says what an unfinished import has left, and offers to go on with it or to delete it. Returns its height.
 float unfinished_banner(const Model& model, const glm::vec2& begin, float width, Actions& actions);
+/// Says that the window closes once files are written, and offers to cancel either. Returns its height.
+float closing_banner(const Model& model, const glm::vec2& begin, float width, Actions& actions);
 /// Says why work cannot be saved now, and offers what helps. Returns its height.
 float trouble_banner(const Model& model, const glm::vec2& begin, float width, Actions& actions);
 

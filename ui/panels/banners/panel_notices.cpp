@@ -154,6 +154,7 @@ float notices(const Model& model, const glm::vec2& begin, float width, Actions& 
         top += read_only_banner(model, begin, width, actions);
     if (model.disputes.empty()) put_off.clear();
     if (!put_off.empty() && put_off == model.session_path) top += put_off_banner({begin.x, top}, width);
+    if (model.waits_to_close) top += closing_banner(model, {begin.x, top}, width, actions);
     if (!model.trouble.empty()) top += trouble_banner(model, {begin.x, top}, width, actions);
     if (model.unfinished) top += unfinished_banner(model, {begin.x, top}, width, actions);
     if (!model.looks_like_labels.empty()) top += labels_banner(model, {begin.x, top}, width, actions);
