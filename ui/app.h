@@ -60,7 +60,7 @@ private:
     void draw();
     bool draw_ui();
     void try_again_soon();
-    void draw_strokes() const;
+    void draw_strokes();
     void say_that_it_is_coming() const;
     void write_screen_texts() const;
     Model model() const;
@@ -113,7 +113,8 @@ private:
     bool drew_complete_ = false;  ///< whether the last drawn interface reports the picture as sharp
     bool drew_cut_box_ = false, drew_jobs_ = false, choosers_were_busy_ = false;
     uint64_t drawn_messages_ = 0, drawn_openings_ = 0;
-    int drawn_windows_ = 0;  ///< number of windows of the interface in the last frame
+    std::vector<LabelMemory> label_memories_;  ///< of each pane
+    int drawn_windows_ = 0;                    ///< number of windows of the interface in the last frame
     glm::dvec3 drawn_probe_voxel_{0.0};
     RunReport report_;
 };

@@ -35,14 +35,15 @@ void draw_rimmed(ImDrawList& list, const ImVec2& at, const glm::dvec3& ink, cons
 
 /// Draws marks and their texts in a pane.
 template <class OnScreen>
-void draw_over(Marks marks, const glm::uvec2& pane, const OnScreen& on_screen, ImDrawList& list)
+void draw_over(Marks marks, const glm::uvec2& pane, const OnScreen& on_screen, ImDrawList& list,
+               LabelMemory* memory = nullptr)
 {
     std::vector<glm::dvec2> sizes;
     for (const Label& label : marks.labels) {
         const ImVec2 size = ImGui::CalcTextSize(label.text.c_str());
         sizes.emplace_back(size.x, size.y);
     }
-    spread_labels(marks, sizes, LABEL_MARGIN * double(ImGui::GetFontSize() / FONT_UNITS), pane);
+    spread_labels(marks, sizes, LABEL_MARGIN * double(ImGui::GetFontSize() / FONT_UNITS), pane, memory);
     for (const Stroke& stroke : marks.strokes)
         list.AddLine(on_screen(stroke.from), on_screen(stroke.to), color_of(stroke.color, 1.0f), float(stroke.width));
     for (const Label& label : marks.labels) {
@@ -132,7 +133,7 @@ void App::say_that_it_is_coming() const
 
 /// Draws the lines over each pane: the probe's outline, even if the probe is hidden by the volume; in maps, the
 /// camera's direction; and a line towards the point to which assistance pulls the probe.
-void App::draw_strokes() const
+void App::draw_strokes()
 {
     const Document& document = bench_->document();
     if (!document.screen.shows_anything()) return say_that_it_is_coming();
@@ -142,6 +143,7 @@ void App::draw_strokes() const
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     const Model seen = model();
     const double units = ImGui::GetFontSize() / FONT_UNITS;
+    label_memories_.resize(document.screen.parts().size());
     for (const Screen::Part& part : document.screen.parts()) {
         const glm::dvec2 origin(viewport_.layout().begin + part.pane.box.begin);
         const glm::uvec2 pixels = part.pane.box.end - part.pane.box.begin;
@@ -155,8 +157,8 @@ void App::draw_strokes() const
         if (part.view->shown_camera()) {
             Pane shown = part.pane;
             shown.shot.camera = *part.view->shown_camera();
-            draw_over(marks_of(seen, shown, size_t(&part - document.screen.parts().data()), units), pixels, on_screen,
-                      list);
+            const auto index = size_t(&part - document.screen.parts().data());
+            draw_over(marks_of(seen, shown, index, units), pixels, on_screen, list, &label_memories_[index]);
         }
         const Camera* const camera = part.view->shown_camera();
         if (servo && servo->step.in_contact && camera) {

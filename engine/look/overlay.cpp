@@ -296,8 +296,13 @@ void for_each_covered(const Stroke& stroke, const glm::uvec2& origin, const Pixe
         }
         for (int x = begin; x < end; ++x) {
             const glm::dvec2 at = glm::dvec2(x, y) + 0.5 - from;
-            const double share = square > 0.0 ? std::clamp(glm::dot(at, way) / square, 0.0, 1.0) : 0.0;
-            const double covered = std::clamp(reach - glm::length(at - share * way), 0.0, 1.0);
+            const double along = square > 0.0 ? glm::dot(at, way) / square : 0.0, share = std::clamp(along, 0.0, 1.0);
+            double covered = std::clamp(reach - glm::length(at - share * way), 0.0, 1.0);
+            if (stroke.has_flat_ends) {
+                const double inside = std::min(along, 1.0 - along) * std::sqrt(square);
+                const double across = glm::length(at - along * way);
+                covered = std::clamp(reach - across, 0.0, 1.0) * std::clamp(inside + 0.5, 0.0, 1.0);
+            }
             if (covered > 0.0) paint(size_t(x), size_t(y), covered);
         }
     }

@@ -17,6 +17,7 @@ struct Stroke {
     glm::dvec2 from{0.0}, to{0.0};  ///< in pixels of the pane, y down, pixel centres at + 0.5
     glm::dvec3 color{1.0};          ///< linear light
     double width = 1.5;             ///< pixels
+    bool has_flat_ends = false;     ///< ends at `from` and `to`; else round ends lie around these
 };
 
 /// The objects from which strokes are made.

@@ -21,7 +21,7 @@ inline constexpr size_t MAX_FIGURE_TEXTS = 100;
 
 /// What publications need over a picture (engine/workbench/sight/figure_elements.h).
 struct DrawnElements {
-    bool has_scale_bar = false, has_color_bar = false, has_legend = false, has_axes = false;
+    bool has_scale_bar = false, has_color_bar = false, has_legend = false, has_axes = false, has_measurements = false;
     std::string title;
     std::vector<TextInFigure> texts;
 };
@@ -75,6 +75,7 @@ void element_fields(Visitor& f, DrawnElements& elements)
     f.flag("color_bar", elements.has_color_bar, {"colours and opacity of the transfer function"});
     f.flag("legend", elements.has_legend, {"colours and names of the groups"});
     f.flag("axes", elements.has_axes, {"directions of x, y and z"});
+    f.flag("measurements", elements.has_measurements, {"lines, names and values of the measurements"});
     f.text("title", elements.title, {"above the picture"});
     const auto visit = [&](auto& item, size_t index, size_t count) {
         elements.texts.resize(count);

@@ -86,6 +86,7 @@ FigureElements elements_of(const DrawnElements& drawn)
                             .color_bar = drawn.has_color_bar,
                             .legend = drawn.has_legend,
                             .axes = drawn.has_axes,
+                            .measurements = drawn.has_measurements,
                             .title = drawn.title};
     for (const TextInFigure& text : drawn.texts) elements.texts.push_back({text.voxel, text.text});
     return elements;

@@ -9,6 +9,7 @@
 #include "engine/look/camera_motion.h"
 #include "engine/workbench/sight/figure_pane.h"
 #include "engine/workbench/sight/figure_texts.h"
+#include "engine/workbench/sight/measure_lines.h"
 #include "engine/workbench/sight/words.h"
 
 namespace shvr::ui {
@@ -60,6 +61,9 @@ public:
             if (elements_.axes) axes();
             if (elements_.color_bar) color_bar();
             if (elements_.legend) legend();
+        }
+        if (elements_.measurements && pane_.kind != Pane::Kind::map && !pane_.shot.right_eye) measurements(is_first);
+        if (is_first) {
             for (const FigureText& text : elements_.texts) text_at_point(text);
         }
         return drawn_.take_part();
@@ -242,6 +246,66 @@ private:
         above_axes_ = box.begin.y;
     }
 
+    /// Draws measurements. Their labels cover no other element, and are near their lines or have a thin line to them.
+    void measurements(bool is_first)
+    {
+        const std::vector<Measurement>& all = scene_.session.measurements;
+        if (all.empty()) {
+            if (is_first) leave_out("the measurements", "the session has none");
+            return;
+        }
+        std::vector<LabelLine> sides, arcs;
+        std::vector<LabelPlace> places;
+        std::vector<std::string> texts;
+        for (size_t i = 0; i < all.size(); ++i) {
+            const MeasureLines shown = lines_of(all[i], pane_, scene_.volume, line_ / FONT_UNITS);
+            sides.insert(sides.end(), shown.sides.begin(), shown.sides.end());
+            arcs.insert(arcs.end(), shown.arc.begin(), shown.arc.end());
+            if (!shown.label) continue;
+            places.push_back(*shown.label);
+            texts.push_back(
+                shortened(label_of(all[i], i + 1, scene_.volume), size_.x - edge_, line_, drawn_.draw_texts()));
+        }
+        if (is_first && pane_.kind == Pane::Kind::main && places.size() < all.size())
+            left_out_.push_back(sentence(counted(int64_t(all.size() - places.size()), "measurement"), " of ",
+                                         all.size(), " cannot be seen: outside of the picture"));
+        drawn_.lines(sides, drawn_.ink(), std::max(1.0, 0.1 * line_));
+        drawn_.lines(arcs, drawn_.ink(), std::max(1.0, 0.07 * line_));
+        for (const LabelLine& side : sides)
+            for (const glm::dvec2& end : {side.from, side.to}) drawn_.dot(end, 0.15 * line_);
+        write_labels(texts, std::move(places), sides);
+    }
+    /// Writes labels of lines where they cover as little as possible.
+    void write_labels(const std::vector<std::string>& texts, std::vector<LabelPlace> places,
+                      const std::vector<LabelLine>& lines)
+    {
+        std::vector<glm::dvec2> sizes;
+        for (const double width : widths_of(texts, line_, drawn_.draw_texts())) sizes.emplace_back(width, line_);
+        const size_t count = texts.size();
+        const std::vector<LabelPlace> before = places;
+        for (const Box& box : drawn_.taken()) {  // which stay
+            places.push_back({.at = box.begin});
+            sizes.push_back(box.end - box.begin);
+        }
+        spread(places, sizes, size_, lines);
+        size_t covering = 0;
+        std::vector<Words> words;
+        std::vector<LabelLine> leaders;
+        for (size_t i = 0; i < count; ++i) {
+            const glm::dvec2 begin = places[i].at - places[i].anchor * sizes[i];
+            const Box box{begin, begin + sizes[i]};
+            covering += !drawn_.is_free(box);
+            drawn_.take(box);
+            words.push_back({begin, {0.0, 0.0}, texts[i]});
+            if (const auto leader = leader_of(before[i], places[i], sizes[i])) leaders.push_back(*leader);
+        }
+        drawn_.lines(leaders, drawn_.ink(), std::max(1.0, 0.05 * line_));
+        drawn_.write(words, line_);
+        if (covering > 0)
+            left_out_.push_back(sentence(counted(int64_t(covering), "label"),
+                                         " of measurements cannot be read: the picture is too small for all of them"));
+    }
+
     void text_at_point(const FigureText& text)
     {
         const auto at = project(pane_.shot.camera, pane_.pixels(), text.voxel * scene_.volume.spacing);
@@ -251,10 +315,12 @@ private:
             return left_out_.push_back(
                 sentence("the text ", in_quotes(text.text), " is left out: its point is outside of the picture"));
         const double radius = 0.2 * line_;
-        drawn_.line(at->pixel, at->pixel + glm::dvec2(0.01, 0.0), drawn_.ink(), 2.0 * radius);
-        // To the left of the point where the right side has less room; on the other side, or above or below, if
-        // something is there.
-        const bool is_right = at->pixel.x < 0.5 * size_.x;
+        drawn_.dot(at->pixel, radius);
+        // To the right of the point where there is room for it, so that it changes its side rarely in movies; on the
+        // other side, or above or below, if something is there.
+        const double right_room = size_.x - at->pixel.x - radius - 0.3 * line_;
+        const bool is_right =
+            drawn_.widest_of(std::span(&text.text, 1), line_) <= right_room || 2.0 * at->pixel.x < size_.x;
         for (const double lines : {0.0, 1.0, -1.0, 2.0, -2.0, 3.0, -3.0, 4.0, -4.0}) {
             const glm::dvec2 place = at->pixel + glm::dvec2(0.0, lines * line_);
             for (const bool right : {is_right, !is_right})
@@ -311,8 +377,9 @@ Figure figure_of(const FigureElements& elements, const FigureScene& scene, const
                  std::vector<std::string>& left_out)
 {
     Figure figure;
-    const double text_pixels =
-        elements.text_pixels > 0.0 ? elements.text_pixels : automatic_text_pixels(scene.session.render.size);
+    const double text_pixels = elements.text_pixels > 0.0 || scene.panes.empty()
+                                   ? elements.text_pixels
+                                   : automatic_text_pixels(scene.panes.front().pixels());
     for (const Pane& pane : scene.panes)
         figure.parts.push_back(
             PaneFigure(elements, scene, pane, text_pixels, draw_texts, left_out).all(&pane == scene.panes.data()));

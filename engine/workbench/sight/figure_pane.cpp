@@ -56,8 +56,19 @@ void FigurePane::rectangle(const glm::dvec2& begin, const glm::dvec2& end, const
 
 void FigurePane::line(const glm::dvec2& from, const glm::dvec2& to, const glm::dvec3& color, double width)
 {
-    part_.strokes.push_back({from, to, rim_, width + 2.0 * rim_width()});
-    part_.strokes.push_back({from, to, color, width});
+    const LabelLine drawn{from, to};
+    lines(std::span(&drawn, 1), color, width);
+}
+
+void FigurePane::lines(std::span<const LabelLine> drawn, const glm::dvec3& color, double width)
+{
+    for (const LabelLine& each : drawn) part_.strokes.push_back({each.from, each.to, rim_, width + 2.0 * rim_width()});
+    for (const LabelLine& each : drawn) part_.strokes.push_back({each.from, each.to, color, width});
+}
+
+void FigurePane::dot(const glm::dvec2& middle, double radius)
+{
+    line(middle, middle + glm::dvec2(0.01, 0.0), ink_, 2.0 * radius);
 }
 
 void FigurePane::write(const std::vector<Words>& words, double height)

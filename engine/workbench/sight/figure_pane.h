@@ -36,10 +36,14 @@ public:
     /// Whether the box lies within the pane and off all boxes that are taken.
     bool is_free(const Box& box) const;
     void take(const Box& box) { taken_.push_back(box); }
+    const std::vector<Box>& taken() const { return taken_; }
 
     /// A rectangle with fractional sides: pixels at its borders are partly covered.
     void rectangle(const glm::dvec2& begin, const glm::dvec2& end, const glm::dvec3& color);
     void line(const glm::dvec2& from, const glm::dvec2& to, const glm::dvec3& color, double width);
+    /// Draws lines whose rims lie below all of them.
+    void lines(std::span<const LabelLine> drawn, const glm::dvec3& color, double width);
+    void dot(const glm::dvec2& middle, double radius);
     void write(const std::vector<Words>& words, double height);
     /// Returns the width in pixels of the widest text, if its line is `height` pixels high.
     double widest_of(std::span<const std::string> texts, double height) const;

@@ -56,18 +56,20 @@ double distance_from(const LabelBox& box, const glm::dvec2& point)
 }
 
 /// Tries places ever farther from the label's point, on both sides, then along the line, and returns the cheapest. To
-/// cover a label costs far more than to cover a line, and that as much as to be some lines of text farther away.
+/// cover a label costs far more than to cover a line, and that as much as to be some lines of text farther away. The
+/// `last` offset is preferred to places that are nearer by fewer than STAY lines of text.
 LabelPlace free_place(const LabelPlace& place, const glm::dvec2& size, const glm::dvec2& pane,
-                      const std::vector<LabelBox>& taken, std::span<const LabelLine> lines)
+                      const std::vector<LabelBox>& taken, std::span<const LabelLine> lines,
+                      const std::optional<glm::dvec2>& last)
 {
-    constexpr double MAX_STEPS = 400.0, OF_LABELS = 100.0, OF_LINES = 0.5, OF_DISTANCE = 0.15;
+    constexpr double MAX_STEPS = 400.0, OF_LABELS = 100.0, OF_LINES = 0.5, OF_DISTANCE = 0.15, STAY = 3.0;
     const double height = std::max(std::min(size.x, size.y), 1.0), pace = 0.5 * height;
     const glm::dvec2 away = pace * place.away / glm::length(place.away), along(-away.y, away.x);
     const glm::dvec2 point = place.at - place.away;
     const int steps = int(std::min(std::ceil(glm::length(pane) / pace), MAX_STEPS));
     double least = std::numeric_limits<double>::infinity();
     LabelPlace best = place;
-    const auto try_place = [&](LabelPlace moved, const glm::dvec2& way) {
+    const auto try_place = [&](LabelPlace moved, const glm::dvec2& way, double bonus = 0.0) {
         moved.at += way;
         moved = within(moved, size, pane);
         const LabelBox box = box_of(moved, size);
@@ -76,9 +78,12 @@ LabelPlace free_place(const LabelPlace& place, const glm::dvec2& size, const glm
         for (const LabelLine& line : lines) crossed += length_in(line, box);
         const double farther = std::max(distance_from(box, point) - glm::length(place.away), 0.0);
         if (covered > 0.0) covered += height * height;  // however little: never for the sake of the distance
-        const double cost = OF_LABELS * covered + height * (OF_LINES * crossed + OF_DISTANCE * farther);
+        const double cost = OF_LABELS * covered + height * (OF_LINES * crossed + OF_DISTANCE * farther) - bonus;
         if (cost < least) least = cost, best = moved;
     };
+    if (last)
+        try_place({point + *last + place.anchor * size, place.anchor, place.away}, glm::dvec2(0.0),
+                  OF_DISTANCE * STAY * height * height);
     const LabelPlace other = beyond(place);
     for (const glm::dvec2& way : {away, along})
         for (int step = 0; step <= steps && least > height * OF_DISTANCE * pace * step; ++step) {
@@ -115,8 +120,13 @@ std::optional<LabelLine> leader_of(const LabelPlace& before, const LabelPlace& a
     return LabelLine{point, glm::clamp(point, box.begin, box.end)};
 }
 
+glm::dvec2 offset_of(const LabelPlace& before, const LabelPlace& after, const glm::dvec2& size)
+{
+    return box_of(after, size).begin - (before.at - before.away);
+}
+
 void spread(std::span<LabelPlace> labels, std::span<const glm::dvec2> sizes, const glm::dvec2& pane,
-            std::span<const LabelLine> lines)
+            std::span<const LabelLine> lines, std::span<const std::optional<glm::dvec2>> last)
 {
     SHVR_CHECK(labels.size() == sizes.size(), labels.size(), sizes.size());
     std::vector<LabelBox> taken;
@@ -124,7 +134,7 @@ void spread(std::span<LabelPlace> labels, std::span<const glm::dvec2> sizes, con
         if (labels[i].away == glm::dvec2(0.0)) taken.push_back(box_of(labels[i], sizes[i]));
     for (size_t i = 0; i < labels.size(); ++i) {
         if (labels[i].away == glm::dvec2(0.0)) continue;
-        labels[i] = free_place(labels[i], sizes[i], pane, taken, lines);
+        labels[i] = free_place(labels[i], sizes[i], pane, taken, lines, i < last.size() ? last[i] : std::nullopt);
         taken.push_back(box_of(labels[i], sizes[i]));
     }
 }

@@ -31,8 +31,12 @@ struct LabelLine {
 /// Moves labels that may be moved, so that they lie within the pane and cover no other label: in order, after all
 /// labels that stay, on either side of their points, near these, and off the lines where that is not far. Where there
 /// is no free place, a label covers as little as possible. `sizes`: of the texts, with their margins, in pixels.
+/// `last`: for each label, its offset in the last frame; it stays there unless another place is better by some lines
+/// of text. Null: it had none.
 void spread(std::span<LabelPlace> labels, std::span<const glm::dvec2> sizes, const glm::dvec2& pane,
-            std::span<const LabelLine> lines = {});
+            std::span<const LabelLine> lines = {}, std::span<const std::optional<glm::dvec2>> last = {});
+/// Returns the offset of a text's upper left corner from its label's point. `before`: before the label was moved.
+glm::dvec2 offset_of(const LabelPlace& before, const LabelPlace& after, const glm::dvec2& size);
 /// Returns a line from a label's point to the label if that lies so far away that it may be taken for another one's;
 /// null if it is near. `before`: before the label was moved.
 std::optional<LabelLine> leader_of(const LabelPlace& before, const LabelPlace& after, const glm::dvec2& size);

@@ -9,6 +9,7 @@
 #include "engine/workbench/sight/cut_handles.h"
 #include "engine/workbench/sight/hits.h"
 #include "engine/workbench/sight/label_place.h"
+#include "engine/workbench/sight/measure_lines.h"
 #include "engine/workbench/sight/plane_handles.h"
 #include "engine/workbench/sight/words.h"
 
@@ -24,17 +25,6 @@ constexpr double DASH = 6.0, GAP = 5.0;
 double luminance_of(const glm::dvec3& linear)
 {
     return glm::dot(linear, glm::dvec3(0.2126, 0.7152, 0.0722));
-}
-
-/// Returns a name cut to at most MOST characters, without splitting a UTF-8 sequence.
-std::string shortened_name(const std::string& name)
-{
-    constexpr size_t MOST = 32;
-    const auto begins = [](char c) { return (uint8_t(c) & 0xc0) != 0x80; };
-    size_t characters = 0;
-    for (size_t at = 0; at < name.size(); ++at)
-        if (begins(name[at]) && ++characters > MOST) return name.substr(0, at) + "...";
-    return name;
 }
 
 class Drawing {
@@ -88,6 +78,11 @@ private:
     {
         marks_.strokes.push_back({from, to, DARK, (width + 2.0) * units_});
         marks_.strokes.push_back({from, to, color, width * units_});
+    }
+    /// Draws a rectangle around a line, as wide as stated.
+    void rectangle(const glm::dvec2& from, const glm::dvec2& to, const glm::dvec3& color, double width)
+    {
+        marks_.strokes.push_back({from, to, color, width, true});
     }
     void dashed(const glm::dvec2& from, const glm::dvec2& to, const glm::dvec3& color)
     {
@@ -265,64 +260,30 @@ private:
         marks_.labels.push_back({place.at, place.anchor, std::move(text), color, place.away});
     }
 
-    /// Draws a measurement's sides and points, with `text` next to a side. `is_open`: its last side is not set yet.
-    void measurement(const Measurement& measured, const std::string& text, bool is_open)
+    /// Draws a measurement's sides and points, with `text` next to a side. `number` counts from 1.
+    void measurement(const Measurement& measured, size_t number, std::string text, bool is_open)
     {
-        const std::vector<glm::dvec3>& points = measured.points;
-        std::optional<std::pair<glm::dvec2, glm::dvec2>> labelled;
-        glm::dvec2 sum(0.0);
-        int sides = 0;
-        for (size_t i = 1; i < points.size(); ++i) {
-            const glm::dvec3 begin = points[i - 1] * model_.volume.spacing, end = points[i] * model_.volume.spacing;
-            const auto from = pixel_of(begin), to = pixel_of(end);
-            if (!from || !to || (is_slice() && !is_near_plane(begin, end))) continue;
-            if (is_open && i + 1 == points.size())
-                dashed(*from, *to, MEASURED);
+        const MeasureLines lines = lines_of(measured, pane_, model_.volume, units_, is_open);
+        for (const LabelLine& side : lines.sides) {
+            if (lines.is_last_open && &side == &lines.sides.back())
+                dashed(side.from, side.to, MEASURED);
             else
-                line(*from, *to, MEASURED, 2.0);
-            marks_.lines.push_back({*from, *to});
-            for (const glm::dvec2& at : {*from, *to}) ring(at, 3.5 * units_, MEASURED);
-            if (part_in_pane(*from, *to, pixels_) && (!labelled || i == points.size() / 2)) labelled = {*from, *to};
-            sum += *from + *to;
-            ++sides;
+                line(side.from, side.to, MEASURED, 2.0);
+            marks_.lines.push_back(side);
+            for (const glm::dvec2& at : {side.from, side.to}) ring(at, 3.5 * units_, MEASURED);
         }
-        if (!labelled) return;
-        if (measured.kind == MeasureKind::angle && points.size() == 3) arc(measured);
-        label_line(labelled->first, labelled->second, sum / (2.0 * sides), text, MEASURED);
-    }
-    /// Draws an angle's arc between its sides, unless it is not seen.
-    void arc(const Measurement& measured)
-    {
-        constexpr int PARTS = 24;
-        constexpr double SHARE = 0.3;  ///< radius of the arc, of the shorter side
-        const glm::dvec3 spacing = model_.volume.spacing, vertex = measured.points[1] * spacing;
-        const glm::dvec3 a = measured.points[0] * spacing - vertex, b = measured.points[2] * spacing - vertex;
-        const auto angle = angle_of(measured, spacing);
-        if (!angle || *angle < 0.1 || *angle > 179.9) return;
-        if (is_slice() && !(is_near_plane(vertex, vertex + a) && is_near_plane(vertex, vertex + b))) return;
-        const glm::dvec3 along = glm::normalize(a), across = glm::normalize(b - glm::dot(b, along) * along);
-        const double radius = SHARE * std::min(glm::length(a), glm::length(b));
-        std::optional<glm::dvec2> before;
-        for (int i = 0; i <= PARTS; ++i) {
-            const double turned = glm::radians(*angle) * i / PARTS;
-            const auto at = pixel_of(vertex + radius * (std::cos(turned) * along + std::sin(turned) * across));
-            if (before && at) line(*before, *at, MEASURED);
-            before = at;
-        }
-    }
-    /// Returns whether the line of a measurement crosses the plane of the slice or comes within a voxel of it.
-    bool is_near_plane(const glm::dvec3& a, const glm::dvec3& b) const
-    {
-        const double from = behind_plane(pane_.shot.camera, a), to = behind_plane(pane_.shot.camera, b);
-        return from * to <= 0.0 || std::min(std::abs(from), std::abs(to)) <= voxel_along();
+        for (const LabelLine& piece : lines.arc) line(piece.from, piece.to, MEASURED);
+        if (!lines.label) return;
+        const LabelPlace& place = *lines.label;
+        marks_.labels.push_back({place.at, place.anchor, std::move(text), MEASURED, place.away, number});
     }
     void measurements()
     {
         if (pane_.shot.right_eye) return;
-        for (size_t i = 0; i < model_.measurements.size(); ++i) {
+        const size_t count = model_.measurements.size();
+        for (size_t i = 0; i < count; ++i) {
             const Measurement& each = model_.measurements[i];
-            const std::string name = shortened_name(name_of(each, i + 1));
-            measurement(each, sentence(name, ": ", value_in_words(each, model_.volume)), false);
+            measurement(each, i + 1, label_of(each, i + 1, model_.volume), false);
         }
         if (model_.measuring.empty() || !is_for_screen_) return;
         Measurement begun{{model_.measuring.begin(), model_.measuring.end()}, model_.session.probe.measure, ""};
@@ -330,8 +291,9 @@ private:
         begun.points.push_back(leads ? *model_.measuring_to : begun.points.back());
         const bool is_angle = begun.kind == MeasureKind::angle && begun.points.size() == 3;
         const double length = length_of(begun, model_.volume.spacing);
-        measurement(
-            begun, is_angle ? value_in_words(begun, model_.volume) : length_in_words(length, model_.volume.unit), true);
+        measurement(begun, count + 1,
+                    is_angle ? value_in_words(begun, model_.volume) : length_in_words(length, model_.volume.unit),
+                    true);
     }
 
     /// Draws a small cross at the pivot of rotation, if the user has picked one.
@@ -374,8 +336,8 @@ private:
         if (bar.pixels < 8.0 * units_) return;
         const glm::dvec2 end(double(pixels_.x) - 16.0 * units_, double(pixels_.y) - 14.0 * units_);
         const glm::dvec2 begin = end - glm::dvec2(bar.pixels, 0.0), rim(units_, 0.0);
-        marks_.strokes.push_back({begin - rim, end + rim, rim_color(ink()), 5.0 * units_});
-        marks_.strokes.push_back({begin, end, ink(), 3.0 * units_});
+        rectangle(begin - rim, end + rim, rim_color(ink()), 5.0 * units_);
+        rectangle(begin, end, ink(), 3.0 * units_);
         marks_.lines.push_back({begin, end});
         label(end - glm::dvec2(0.0, 5.0 * units_), {1.0, 1.0},
               bar.text + (is_perspective ? " at the middle of the view" : ""));
@@ -397,8 +359,8 @@ private:
         for (size_t i = 0; i < named; ++i, at += next) {
             const ColorGroup look = group_of(model_.session.groups, drawn[i]);
             const glm::dvec2 rim(units_, 0.0);
-            marks_.strokes.push_back({at - square - rim, at + rim, DARK, (SQUARE + 2.0) * units_});
-            marks_.strokes.push_back({at - square, at, look.color, SQUARE * units_});
+            rectangle(at - square - rim, at + rim, DARK, (SQUARE + 2.0) * units_);
+            rectangle(at - square, at, look.color, SQUARE * units_);
             label(at - square - glm::dvec2(6.0 * units_, 0.0), {1.0, 0.5}, shortened_name(look.name));
         }
         if (named < drawn.size()) label(at, {1.0, 0.5}, "and " + std::to_string(drawn.size() - named) + " more groups");
@@ -475,7 +437,7 @@ double rim_width(double font_pixels)
 }
 
 void spread_labels(Marks& marks, std::span<const glm::dvec2> text_sizes, const glm::dvec2& margin,
-                   const glm::dvec2& pane)
+                   const glm::dvec2& pane, LabelMemory* memory)
 {
     std::vector<LabelPlace> places;
     std::vector<glm::dvec2> sizes;
@@ -485,8 +447,18 @@ void spread_labels(Marks& marks, std::span<const glm::dvec2> text_sizes, const g
         // With the margin, the anchor's point moves outwards.
         places.push_back({label.at + (2.0 * label.anchor - 1.0) * margin, label.anchor, label.away});
     }
+    std::vector<std::optional<glm::dvec2>> last(places.size());
+    if (memory) {
+        for (size_t i = 0; i < places.size(); ++i)
+            if (const auto at = memory->find(marks.labels[i].key); at != memory->end()) last[i] = at->second;
+        memory->clear();
+    }
     const std::vector<LabelPlace> before = places;
-    spread(places, sizes, pane, marks.lines);
+    spread(places, sizes, pane, marks.lines, last);
+    if (memory)
+        for (size_t i = 0; i < places.size(); ++i)
+            if (marks.labels[i].key != 0)
+                memory->emplace(marks.labels[i].key, offset_of(before[i], places[i], sizes[i]));
     for (size_t i = 0; i < marks.labels.size(); ++i) {
         Label& label = marks.labels[i];
         if (label.away == glm::dvec2(0.0)) continue;

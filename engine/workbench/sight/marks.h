@@ -4,6 +4,7 @@
 // are also drawn into picture files, except for those that only guide the hand (figure.h). Pure; main thread only,
 // while the model exists.
 
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,20 +26,24 @@ struct Label {
     std::string text;
     glm::dvec3 color{1.0};  ///< linear light
     glm::dvec2 away{0.0};   ///< as in LabelPlace
+    size_t key = 0;         ///< of what it names, the same in each frame; 0: none
 };
 /// Texts over pictures have a rim, so that they can be read on any picture: dark around a light ink, else light. Its
 /// width in pixels, for a font of this height.
 glm::dvec3 rim_color(const glm::dvec3& ink);
 double rim_width(double font_pixels);
+/// By a label's key, the offset of its text from its point, in pixels.
+using LabelMemory = std::map<size_t, glm::dvec2>;
 struct Marks {
     std::vector<Stroke> strokes;
     std::vector<Label> labels;
     std::vector<LabelLine> lines;  ///< those of the strokes that labels avoid
 };
 /// Moves labels apart and off lines (label_place.h), and draws a thin line to each that is far from its point.
-/// `text_sizes`: of the labels' texts; `margin`: around each; both in pixels.
+/// `text_sizes`: of the labels' texts; `margin`: around each; both in pixels. `memory`: where labels with keys were in
+/// the last frame, so that they stay there while the view turns; renewed. Null: none.
 void spread_labels(Marks& marks, std::span<const glm::dvec2> text_sizes, const glm::dvec2& margin,
-                   const glm::dvec2& pane);
+                   const glm::dvec2& pane, LabelMemory* memory = nullptr);
 
 enum class MarksFor { screen, picture };
 

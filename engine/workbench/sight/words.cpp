@@ -127,4 +127,14 @@ ScaleBar scale_bar(double units_per_pixel, double longest_pixels, const std::str
     return {length / units_per_pixel, readable(length, unit)};
 }
 
+std::string shortened_name(const std::string& name)
+{
+    constexpr size_t MOST = 32;
+    const auto begins = [](char c) { return (uint8_t(c) & 0xc0) != 0x80; };
+    size_t characters = 0;
+    for (size_t at = 0; at < name.size(); ++at)
+        if (begins(name[at]) && ++characters > MOST) return name.substr(0, at) + "...";
+    return name;
+}
+
 }  // namespace shvr::ui

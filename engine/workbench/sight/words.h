@@ -33,4 +33,7 @@ struct ScaleBar {
 };
 ScaleBar scale_bar(double units_per_pixel, double longest_pixels, const std::string& unit);
 
+/// Returns a name, cut to 32 characters of UTF-8 and "..." if it is longer.
+std::string shortened_name(const std::string& name);
+
 }  // namespace shvr::ui

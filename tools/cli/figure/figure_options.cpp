@@ -45,14 +45,17 @@ void add_figure_options(CLI::App& command, FigureOptions& options)
                      "Draw colours and opacity of the transfer function, with intensities");
     command.add_flag("--legend", elements.legend, "Draw colours and names of the groups that are painted or traced");
     command.add_flag("--axes", elements.axes, "Draw the directions of x, y and z");
+    command.add_flag("--measurements", elements.measurements,
+                     "Draw lines, names and values of the session's measurements");
     command.add_option("--title", elements.title, "Draw a title");
     command.add_option("--text", options.texts, "Draw a dot and a text at a voxel, as in 12.5,40,7:stem; repeatable")
         ->allow_extra_args(false);
     command.add_option(
         "--dpi", options.dots_per_inch,
         sentence("Dots per inch, stored in the picture, and for a --size in mm (default there: ", PRINT_DPI, ")"));
-    command.add_option("--text-pixels", elements.text_pixels,
-                       "Height of a line of text in these (default: 1/28 of the shorter side, at least 10)");
+    command.add_option(
+        "--text-pixels", elements.text_pixels,
+        "Height of a line of text in these (default: 1/28 of the shorter side of the first view, at least 10)");
 }
 
 glm::uvec2 take_picture_size(const std::string& text, FigureOptions& options)
@@ -90,7 +93,7 @@ void check_figure(FigureOptions& options)
     if (pixels != 0.0 && options.elements.is_empty())
         throw UsageError(
             "--text-pixels is given without anything to draw; expected it with --title, --scale-bar, "
-            "--color-bar, --legend, --axes or --text");
+            "--color-bar, --legend, --axes, --measurements or --text");
 }
 
 PictureFile::Over figure_over(const FigureOptions& options, const Opened& opened, const Session& session,

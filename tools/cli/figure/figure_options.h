@@ -1,5 +1,5 @@
 #pragma once
-// shvr render --scale-bar, --color-bar, --legend, --axes, --title, --text: what is drawn over a picture, or over each
+// shvr render --scale-bar, --color-bar, --legend, --axes, --measurements, --title, --text: what is drawn over a picture, or over each
 // frame of a movie, for publications.
 
 #include <optional>

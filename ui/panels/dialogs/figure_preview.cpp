@@ -169,9 +169,10 @@ void draw_elements(ImDrawList& list, const Figure& figure, const ImVec2& begin)
         const auto at = [&](const glm::dvec2& pixel) {
             return ImVec2(origin.x + float(pixel.x), origin.y + float(pixel.y));
         };
-        for (const Stroke& stroke : part.strokes) {  // with round ends, as in files
+        for (const Stroke& stroke : part.strokes) {
             const ImU32 color = shade_of(stroke.color, 1.0);
             list.AddLine(at(stroke.from), at(stroke.to), color, float(stroke.width));
+            if (stroke.has_flat_ends) continue;
             for (const glm::dvec2& end : {stroke.from, stroke.to})
                 list.AddCircleFilled(at(end), 0.5f * float(stroke.width), color);
         }

@@ -88,6 +88,9 @@ void elements_rows(DrawnElements& drawn)
     ImGui::SameLine();
     ImGui::Checkbox("Axes", &drawn.has_axes);
     hint("Directions of x, y and z.");
+    field_name("");
+    ImGui::Checkbox("Measurements", &drawn.has_measurements);
+    hint("Lines, names and values of the measurements.");
     field_name("Title");
     want_glyphs(drawn.title);
     ImGui::InputTextWithHint("##title", "none", &drawn.title);

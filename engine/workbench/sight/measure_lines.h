@@ -1,0 +1,29 @@
+#pragma once
+// The lines of a measurement in a pane and the place of its label, on the screen as in figures. Pure; any thread.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/look/panes.h"
+#include "engine/session/session.h"
+#include "engine/workbench/sight/label_place.h"
+
+namespace shvr::ui {
+
+/// Pixels of the pane.
+struct MeasureLines {
+    std::vector<LabelLine> sides;     ///< in slices those that cross the plane or come within a voxel of it
+    bool is_last_open = false;        ///< the last of `sides` is not set yet
+    std::vector<LabelLine> arc;       ///< between the sides of an angle, in short pieces; empty: not seen, or no angle
+    std::optional<LabelPlace> label;  ///< null: no side is in the pane
+};
+
+/// `is_open`: the last point of the measurement is not set yet. `units`: pixels per unit of the interface.
+MeasureLines lines_of(const Measurement& measured, const Pane& pane, const VolumeInfo& volume, double units,
+                      bool is_open = false);
+
+/// Returns "Path 2: 1.25 mm", of a name of any length its beginning. `number` counts from 1.
+std::string label_of(const Measurement& measured, size_t number, const VolumeInfo& volume);
+
+}  // namespace shvr::ui
