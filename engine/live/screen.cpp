@@ -209,13 +209,9 @@ Image8 Screen::read_back()
                                 &whole.rgba[4 * (box.begin.x + size_t(pixels_.x) * (box.begin.y + y))]);
         const bool is_map = part.pane.kind == Pane::Kind::map || part.pane.kind == Pane::Kind::slice;
         if (!is_map && !view_.cut_box) continue;
-        const glm::dvec3 probe = probe_voxel_ * renderer_.scene().info().spacing;
-        const OverlayScene scene{.main = camera_,
-                                 .main_pixels = parts_[0].pane.box.end - parts_[0].pane.box.begin,
-                                 .probe = {.center = probe, .is_outlined = false, .has_arrow = false},
-                                 .cross = cross(),
-                                 .box = cut_box(false)};
-        draw_strokes(whole, strokes_of(part.pane, scene, renderer_.scene().info()), box);
+        const VolumeInfo& volume = renderer_.scene().info();
+        const OverlayScene scene = overlay_of(view_, cut_, camera_, parts_[0].pane.pixels(), probe_voxel_, volume);
+        draw_strokes(whole, strokes_of(part.pane, scene, volume), box);
     }
     return whole;
 }

@@ -338,6 +338,17 @@ std::vector<glm::dvec2> silhouette_of(const Camera& camera, const glm::uvec2& pi
     return outline;
 }
 
+OverlayScene overlay_of(const ViewSettings& view, const CutBox& cut, const Camera& main, const glm::uvec2& main_pixels,
+                        const glm::dvec3& probe_voxel, const VolumeInfo& volume)
+{
+    OverlayScene scene{.main = main,
+                       .main_pixels = main_pixels,
+                       .probe = {.center = probe_voxel * volume.spacing, .is_outlined = false, .has_arrow = false}};
+    if (view.slices.cross) scene.cross = *view.slices.cross * volume.spacing;
+    if (view.cut_box) scene.box = box_of(cut, volume);
+    return scene;
+}
+
 OverlayScene::Box box_of(const CutBox& cut, const VolumeInfo& volume)
 {
     const glm::dvec3 size(volume.size);

@@ -51,6 +51,9 @@ struct OverlayScene {
     };
     std::optional<Box> box{};
 };
+/// Returns what pictures draw lines of: all but the probe. `main_pixels`: the size of the main pane.
+OverlayScene overlay_of(const ViewSettings& view, const CutBox& cut, const Camera& main, const glm::uvec2& main_pixels,
+                        const glm::dvec3& probe_voxel, const VolumeInfo& volume);
 /// Returns the part of a volume that remains after cutting.
 OverlayScene::Box box_of(const CutBox& cut, const VolumeInfo& volume);
 

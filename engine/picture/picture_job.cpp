@@ -115,10 +115,7 @@ PictureJob::PictureJob(Renderer& renderer, const Session& session, const Camera&
     always_shown_ = voxels_of_shell(options_.probe, info);
     const glm::dvec3 probe_voxel = session.probe.voxel.value_or(0.5 * glm::dvec3(info.size));
     panes_ = panes_of(session.view, camera, size_, info, probe_voxel);
-    overlay_ = {.main = camera,
-                .main_pixels = panes_[0].box.end - panes_[0].box.begin,
-                .probe = {.center = probe_voxel * info.spacing, .is_outlined = false, .has_arrow = false}};
-    if (session.view.slices.cross) overlay_.cross = *session.view.slices.cross * info.spacing;
+    overlay_ = overlay_of(session.view, session.cut, camera, panes_[0].pixels(), probe_voxel, info);
     if (const auto& probe = options_.probe) {
         overlay_.probe = {.center = probe->center,
                           .radius = probe->radius,
@@ -126,7 +123,6 @@ PictureJob::PictureJob(Renderer& renderer, const Session& session, const Camera&
                           .is_outlined = options_.outlines_probe && probe->has_silhouette,
                           .has_arrow = options_.outlines_probe && probe->has_arrow};
     }
-    if (session.view.cut_box) overlay_.box = box_of(session.cut, info);
     const uint64_t row_bytes = PIXEL_BYTES * size_.x;
     const uint64_t band_bytes = std::min(MAX_BAND_BYTES, renderer_.memory().host_bytes_left() / 8);
     band_rows_ = uint32_t(std::clamp<uint64_t>(band_bytes / row_bytes, 1, size_.y));

@@ -61,7 +61,7 @@ Stamp smaller(const Stamp& stamp, double scale)
     return small;
 }
 
-/// Lays out the elements over the page as large as it will be, so that they are where they will be, and returns them
+/// Lays out the elements and the lines of slices and maps over the page as large as it will be, so that they are where they will be, and returns them
 /// as small as the preview.
 Figure elements_over(const FigureTask& task, const Model& model, Session session, double scale,
                      std::vector<std::string>& left_out)
@@ -71,6 +71,12 @@ Figure elements_over(const FigureTask& task, const Model& model, Session session
     const std::vector<Pane> panes = panes_of(session.view, model.camera, pixels, model.volume, model.probe_voxel);
     const std::vector<uint8_t> groups = drawn_groups(session, model.voxels_by_group, model.trace);
     Figure figure = figure_of(elements_of(task.elements), {session, model.volume, panes, groups}, draw_texts, left_out);
+    const OverlayScene lines =
+        overlay_of(session.view, session.cut, model.camera, panes[0].pixels(), model.probe_voxel, model.volume);
+    for (size_t i = 0; i < panes.size(); ++i) {
+        const std::vector<Stroke> strokes = strokes_of(panes[i], lines, model.volume);
+        figure.parts[i].strokes.insert(figure.parts[i].strokes.begin(), strokes.begin(), strokes.end());
+    }
     for (Figure::Part& part : figure.parts) {
         part.box = {glm::uvec2(scale * glm::dvec2(part.box.begin)), glm::uvec2(scale * glm::dvec2(part.box.end))};
         for (Stroke& stroke : part.strokes) {
@@ -246,7 +252,7 @@ void figure_preview(const FigureTask& task, const Model& model, bool begins)
     list.AddRect(begin, end, ui::shade_of(ColorRole::faint_text));
     hint(
         "A coarse copy of the window's picture, with the elements where they will be. The file shows the volume "
-        "sharp, with the lines of slices and overviews, and without the probe.");
+        "sharp, and without the probe.");
     ImGui::PushTextWrapPos(begin.x - ImGui::GetWindowPos().x + float(room.x));
     if (shown_page.has_unseen) ImGui::TextDisabled("Striped: not seen in the window; the figure shows the scan there.");
     for (const std::string& words : shown_page.left_out) {
