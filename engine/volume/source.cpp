@@ -31,19 +31,22 @@ struct Measured {
 template <class T, class Take>
 void for_each_slab(const Measured& measured, double lower, double upper, const Take& take)
 {
-    std::vector<T> slab;
     int64_t done = 0;
-    for (int64_t i = 0; i < measured.walk.boxes(); ++i) {
-        const VoxelBox box = measured.walk.box(i);
-        const Size3 extent = box.size();
-        slab.resize(size_t(extent.x * extent.y * extent.z));
-        read_parts(measured.source, box, std::as_writable_bytes(std::span(slab)), measured.gaps,
-                   [&](const VoxelBox&, std::span<const std::byte> part) {
-                       take(std::span<const T>(slab).first(part.size() / sizeof(T)), int64_t{1});  // at its begin
-                   });
-        done += int64_t(slab.size());
-        tell(measured.progress, lower + (upper - lower) * double(done) / double(measured.walk.voxels()));
-    }
+    read_boxes(measured.source, measured.walk,
+               [&](const VoxelBox& box, std::span<std::byte> voxels, const std::exception_ptr& failure) {
+                   const auto take_part = [&](const VoxelBox&, std::span<const std::byte> part) {
+                       take(std::span(reinterpret_cast<const T*>(part.data()), part.size() / sizeof(T)), int64_t{1});
+                   };
+                   if (!failure)
+                       take_part(box, voxels);
+                   else if (!measured.gaps)
+                       std::rethrow_exception(failure);
+                   else
+                       read_parts(measured.source, box, voxels, measured.gaps, take_part);
+                   const Size3 extent = box.size();
+                   done += extent.x * extent.y * extent.z;
+                   tell(measured.progress, lower + (upper - lower) * double(done) / double(measured.walk.voxels()));
+               });
     const auto fill = static_cast<T>(measured.walk.fill());
     if (measured.walk.rest() > 0) take(std::span(&fill, 1), measured.walk.rest());
 }
@@ -57,19 +60,27 @@ size_t bin_of(const ValueRange& range, double value)
     return std::min(BINS - 1, size_t(place * double{BINS}));
 }
 
+/// Counts each value. Neighbouring voxels are often equal: with alternating tables, an increment need not wait for the
+/// previous increment of the same counter.
+template <class Unsigned, size_t VALUES, size_t TABLES>
+void count_values(std::span<const Unsigned> voxels, int64_t times, std::span<int64_t> counts)
+{
+    size_t i = 0;
+    for (; i + TABLES <= voxels.size(); i += TABLES)
+        for (size_t table = 0; table < TABLES; ++table) counts[table * VALUES + voxels[i + table]] += times;
+    for (; i < voxels.size(); ++i) counts[voxels[i]] += times;
+}
+
 /// For integers of 8 and 16 bits, counts each value; all statistics follow from the counts.
 template <class T>
 VolumeStatistics measure_integers(const Measured& measured)
 {
     using Unsigned = std::make_unsigned_t<T>;
-    constexpr size_t VALUES = size_t{std::numeric_limits<Unsigned>::max()} + 1;
-    // Neighbouring voxels are often equal. With alternating tables, an increment need not wait for the previous
-    // increment of the same counter.
-    constexpr size_t TABLES = 4;
+    constexpr size_t VALUES = size_t{std::numeric_limits<Unsigned>::max()} + 1, TABLES = sizeof(T) == 1 ? 8 : 4;
     std::vector<int64_t> counts(TABLES * VALUES);
     for_each_slab<T>(measured, 0.0, 1.0, [&](std::span<const T> voxels, int64_t times) {
-        for (size_t i = 0; i < voxels.size(); ++i)
-            counts[(i % TABLES) * VALUES + static_cast<Unsigned>(voxels[i])] += times;
+        const std::span as_unsigned(reinterpret_cast<const Unsigned*>(voxels.data()), voxels.size());
+        count_values<Unsigned, VALUES, TABLES>(as_unsigned, times, counts);
     });
 
     std::vector<int64_t> ascending;

@@ -82,9 +82,9 @@ struct MeasureOptions {
     Progress progress{};
     Gaps* gaps = nullptr;  ///< receives unreadable parts, which are left out (gaps.h); null: reading errors are thrown
 };
-/// Measures the volume in slabs of at most 32 MiB, but at least one row. Types of 32 and 64 bits need a second pass for
-/// the histogram; its range, without outliers (outliers.h), comes from the first pass. A volume without a finite voxel
-/// has minimum = maximum = mean = 0. Statistics that the source knows are returned without measuring.
+/// Measures the volume in slabs of at most 16 MiB, but at least one row, and reads one ahead. Types of 32 and 64 bits
+/// need a second pass for the histogram; its range, without outliers (outliers.h), comes from the first pass. A volume
+/// without a finite voxel has minimum = maximum = mean = 0. Statistics that the source knows are returned as they are.
 ///
 /// Large volumes: if a source knows its stored blocks, only those are read, and all other voxels count as fill values.
 /// The measured level (VolumeStatistics::measured_level) is the finest that has, or stores, at most MAX_VOXELS_MEASURED

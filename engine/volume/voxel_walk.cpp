@@ -3,11 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+#include "engine/base/waits/waits.h"
 
 namespace shvr {
 namespace {
 
-constexpr int64_t SLAB_BYTES = int64_t{32} << 20;
+constexpr int64_t SLAB_BYTES = int64_t{16} << 20;  // read_boxes holds two
 constexpr int64_t PIECES = 256, PIECE_VOXELS = int64_t{1} << 18;
 /// If more blocks are stored, they are not listed: listing would take longer than reading a sample should.
 constexpr int64_t MAX_BLOCKS_SAMPLED = int64_t{1} << 20;
@@ -134,6 +139,93 @@ VoxelBox VoxelWalk::box(int64_t index) const
     const int64_t bands = (size_.y - 1) / step_.y + 1;
     const Size3 lower(0, index % bands * step_.y, index / bands * step_.z);
     return {lower, glm::min(lower + step_, size_)};
+}
+
+namespace {
+
+/// Reads the boxes of a walk in order into two buffers, on a thread of its own.
+class ReadAhead {
+public:
+    struct Read {
+        VoxelBox box{};
+        std::vector<std::byte> voxels{};
+        std::exception_ptr failure{};
+    };
+    ReadAhead(const VolumeSource& source, const VoxelWalk& walk) : source_(source), walk_(walk)
+    {
+        thread_ = std::jthread([this, waits_are_over = waits_of_this_thread()](const std::stop_token& stop) {
+            const WaitsUntil waits([&] { return stop.stop_requested() || waits_are_over(); });
+            read_all(stop);
+        });
+    }
+    /// Waits for the next box; it stays until give_back().
+    Read& wait()
+    {
+        std::unique_lock lock(mutex_);
+        changed_.wait(lock, [&] { return read_ > taken_; });
+        return buffers_[size_t(taken_ % 2)];
+    }
+    void give_back()
+    {
+        const std::lock_guard lock(mutex_);
+        ++taken_;
+        changed_.notify_all();
+    }
+
+private:
+    void read_all(const std::stop_token& stop)
+    {
+        for (int64_t i = 0; i < walk_.boxes(); ++i) {
+            {
+                std::unique_lock lock(mutex_);
+                if (!changed_.wait(lock, stop, [&] { return taken_ + 2 > i; })) return;
+            }
+            Read& next = buffers_[size_t(i % 2)];
+            read(source_, walk_.box(i), next);
+            const std::lock_guard lock(mutex_);
+            ++read_;
+            changed_.notify_all();
+        }
+    }
+
+public:
+    static void read(const VolumeSource& source, const VoxelBox& box, Read& into)
+    {
+        into.box = box;
+        into.failure = nullptr;
+        try {
+            into.voxels.resize(size_t(count_of(box.size())) * bytes_of(source.info().type));
+            source.read(box, into.voxels);
+        } catch (...) {
+            into.failure = std::current_exception();
+        }
+    }
+
+private:
+    const VolumeSource& source_;
+    const VoxelWalk& walk_;
+    std::array<Read, 2> buffers_;
+    std::mutex mutex_;
+    std::condition_variable_any changed_;
+    int64_t read_ = 0, taken_ = 0;  ///< numbers of boxes
+    std::jthread thread_;           ///< declared last, so that it ends before the members that it uses are destroyed
+};
+
+}  // namespace
+
+void read_boxes(const VolumeSource& source, const VoxelWalk& walk, const TakeBox& take)
+{
+    if (walk.boxes() == 1) {  // needs no thread
+        ReadAhead::Read only;
+        ReadAhead::read(source, walk.box(0), only);
+        return take(only.box, only.voxels, only.failure);
+    }
+    ReadAhead ahead(source, walk);
+    for (int64_t i = 0; i < walk.boxes(); ++i) {
+        ReadAhead::Read& next = ahead.wait();
+        take(next.box, next.voxels, next.failure);
+        ahead.give_back();
+    }
 }
 
 }  // namespace shvr

@@ -3,7 +3,10 @@
 // sample), and a source that reports how much has been read.
 
 #include <algorithm>
+#include <exception>
+#include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "engine/volume/source.h"
@@ -13,7 +16,7 @@ namespace shvr {
 /// The boxes of level 0 to read, in this order.
 class VoxelWalk {
 public:
-    /// All voxels, as whole rows in order. A box has at most 32 MiB, but at least one row of blocks.
+    /// All voxels, as whole rows in order. A box has at most 16 MiB, but at least one row of blocks.
     static VoxelWalk all(const VolumeSource& source);
     /// The voxels of stored blocks. All other voxels are counted by rest().
     static VoxelWalk stored(const VolumeSource& source, StoredBlocks blocks);
@@ -34,6 +37,13 @@ private:
     int64_t voxels_ = 0, rest_ = 0;
     double fill_ = 0.0;
 };
+
+/// Calls `take` with each box of the walk in order and its voxels, while another thread reads the next box into a second
+/// buffer. `failure`: why the box could not be read; null if it was. The source is used by one thread at a time, except
+/// while `take` runs. An exception from `take` ends the walk.
+using TakeBox =
+    std::function<void(const VoxelBox& box, std::span<std::byte> voxels, const std::exception_ptr& failure)>;
+void read_boxes(const VolumeSource& source, const VoxelWalk& walk, const TakeBox& take);
 
 /// Returns the number of voxels in stored blocks, clipped to a volume of `size`.
 int64_t voxels_stored(const StoredBlocks& stored, const Size3& size);
