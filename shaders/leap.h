@@ -15,7 +15,9 @@ SHARED_CONST uint LEAP_PAINTED = 1u << 24u;
 SHARED_CONST uint LEAP_DISTANCE_SHIFT = 25u;
 /// Maximum distance searched: a leap of 15 cells crosses 60 voxels.
 SHARED_CONST uint LEAP_LIMIT = 15u;
-/// While the grid is built, its stages hand on a byte for each cell: (distance << 1) | painted.
+/// While the grid is built, its stages hand on a byte for each cell, (distance << 1) | painted, in words of four cells
+/// along x, the first one in the lowest byte.
+SHARED_CONST uint LEAP_WORD_CELLS = 4u;
 SHARED_CONST uint LEAP_BYTE_PAINTED = 1u;
 SHARED_CONST uint LEAP_BYTE_SHIFT = 1u;
 
@@ -67,9 +69,9 @@ struct SampleBitsParams {
 };
 
 struct LeapDistanceParams {
-    uvec3 cell_counts;
-    uvec3 cell_begin;  ///< the cells to compute
-    uvec3 cell_end;
+    uvec3 word_counts;
+    uvec3 word_begin;  ///< the words to compute
+    uvec3 word_end;
     uint axis;
 };
 

@@ -173,8 +173,8 @@ void ResidentVolume::create_images()
     if (codes_ != AtlasCodes::filtered && glm::all(glm::lessThanEqual(glm::uvec3(info().size), most)) &&
         memory_.can_create(bits))
         sample_bits_ = create("sample bits", bits);
-    const ResourceDesc bytes = image_desc(Format::r8_uint, shape->cells.texels);
-    for (gpu::Storage& scratch : leap_scratch_) scratch = create("leap scratch", bytes);
+    const glm::uvec3 words = shape->cells.texels / glm::uvec3(gpu::LEAP_WORD_CELLS, 1, 1);
+    for (gpu::Storage& scratch : leap_scratch_) scratch = create("leap scratch", image_desc(Format::r32_uint, words));
 }
 
 /// A brick at a face of the volume also fills the part of the atlas's border next to that face.

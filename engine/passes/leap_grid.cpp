@@ -6,17 +6,32 @@ namespace shvr {
 
 namespace {
 
+constexpr glm::uvec3 WORD(gpu::LEAP_WORD_CELLS, 1, 1);
+
+/// Returns `value`, rounded up to whole words.
+constexpr uint32_t in_words(uint32_t value)
+{
+    return (value + WORD.x - 1) / WORD.x * WORD.x;
+}
+
+CellBox widened(const CellBox& box, const glm::uvec3& reach, const glm::uvec3& counts)
+{
+    return {box.begin - glm::min(box.begin, reach), glm::min(box.end + reach, counts)};
+}
+
 /// The cells that a stage must compute: those that the changed cells can affect, and the cells around these that later
-/// stages read.
+/// stages read. Whole words.
 CellBox cells_of_stage(const CellBox& changed, const glm::uvec3& counts, uint32_t stage)
 {
     // A distance is at most LEAP_LIMIT, so the last stage covers LEAP_LIMIT cells around the change. The result of each
     // stage is read by later stages along their axes: stage 1 runs along x, stage 2 along y, stage 3 along z.
-    const glm::uvec3 reach = gpu::LEAP_LIMIT * (1u + glm::uvec3(stage < 1, stage < 2, stage < 3));
-    return {changed.begin - glm::min(changed.begin, reach), glm::min(changed.end + reach, counts)};
+    constexpr glm::uvec3 FAR(in_words(gpu::LEAP_LIMIT), gpu::LEAP_LIMIT, gpu::LEAP_LIMIT);
+    const glm::uvec3 reach = FAR * (1u + glm::uvec3(stage < 1, stage < 2, stage < 3));
+    const glm::uvec3 end(in_words(changed.end.x), changed.end.y, changed.end.z);
+    return widened({changed.begin / WORD * WORD, end}, reach, counts);
 }
 
-/// Writes entries of the grid to `to` if it is a patch, else bytes.
+/// Writes entries of the grid to `to` if it is a patch, else words.
 void occupancy(FrameGraph& graph, const VolumeBinding& volume, const LeapGridInput& input, const CellBox& cells,
                bool is_patch, Resource& to)
 {
@@ -37,11 +52,11 @@ void occupancy(FrameGraph& graph, const VolumeBinding& volume, const LeapGridInp
         graph.expect({variant_of("leap_occupancy", {{"MASKED", true}, {"PATCH", patch}}), {}});
     graph.expect({"leap_bound", {}});
     pass.push(params);
-    pass.dispatch(cells.end - cells.begin);
+    pass.dispatch((cells.end - cells.begin) / (is_patch ? glm::uvec3(1) : WORD));
     to = pass.write("leap", to);
 }
 
-/// Writes bytes to `to`, and entries of the grid for the last axis, z.
+/// Writes words to `to`, and entries of the grid for the last axis, z.
 void distance(FrameGraph& graph, const VolumeBinding& volume, uint32_t axis, const CellBox& cells, Resource from,
               Resource& to)
 {
@@ -50,8 +65,8 @@ void distance(FrameGraph& graph, const VolumeBinding& volume, uint32_t axis, con
     Pass pass = graph.compute("leap_distance", {{"LAST", is_last}}, names[axis]);
     pass.read("source", from);
     if (is_last) pass.read("page_table", volume.page_table);
-    pass.push(gpu::LeapDistanceParams{volume.cell_counts, cells.begin, cells.end, axis});
-    pass.dispatch(cells.end - cells.begin);
+    pass.push(gpu::LeapDistanceParams{volume.cell_counts / WORD, cells.begin / WORD, cells.end / WORD, axis});
+    pass.dispatch((cells.end - cells.begin) / WORD);
     to = pass.write("leap", to);
 }
 
@@ -104,8 +119,8 @@ void leap_grid_stage(FrameGraph& graph, VolumeBinding& volume, const LeapGridInp
 
 void leap_grid_patch(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input)
 {
-    // The same cells as in the last stage: the cells whose distance a changed cell may limit.
-    const CellBox cells = cells_of_stage(input.changed, volume.cell_counts, LEAP_STAGES - 1);
+    // The cells whose distance a changed cell may limit.
+    const CellBox cells = widened(input.changed, glm::uvec3(gpu::LEAP_LIMIT), volume.cell_counts);
     Pass pass = graph.compute("leap_bound");
     pass.push(gpu::LeapBoundParams{cells.begin, cells.end, input.changed.begin, input.changed.end});
     pass.dispatch(cells.end - cells.begin);

@@ -32,7 +32,7 @@ struct VolumeBinding {
     // Resident volumes:
     Resource page_table;                   ///< uint per brick: slot
     Resource leap;                         ///< r32ui per cell, see shaders/leap.h
-    std::array<Resource, 2> leap_scratch;  ///< r8ui per cell: what stages of the leap grid hand on
+    std::array<Resource, 2> leap_scratch;  ///< r32ui per four cells along x: what stages of the leap grid hand on
     std::optional<Resource> sample_bits;   ///< r32ui, two per cell (shaders/leap.h); optional, only for exact
                                            ///< texels
     // Paged volumes:

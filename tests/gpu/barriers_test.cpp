@@ -57,7 +57,7 @@ std::vector<std::string> messages_of_run()
         gpu::Executor executor(device, memory);
         gpu::Storage buffer = memory.create("buffer", buffer_desc(BYTES)),
                      other = memory.create("other", buffer.desc());
-        gpu::Storage a = memory.create("a", image_desc(Format::r8_uint, CELLS)), b = memory.create("b", a.desc());
+        gpu::Storage a = memory.create("a", image_desc(Format::r32_uint, CELLS)), b = memory.create("b", a.desc());
         const std::vector<ImageRegion> all{{0, glm::uvec3(0), CELLS}};
         FrameGraph first;
         Resource filled = first.fill(first.import("buffer", buffer.import()), 0);

@@ -51,13 +51,13 @@ FrameGraph distances_of(const glm::uvec3& cells, bool tiled, const gpu::Storage*
 {
     FrameGraph graph;
     const Resource zero = graph.fill(graph.create("zero", buffer_desc(4)), 0);
-    const Resource source = graph.copy_to_image(zero, graph.create("source", image_desc(Format::r8_uint, cells)),
+    const Resource source = graph.copy_to_image(zero, graph.create("source", image_desc(Format::r32_uint, cells)),
                                                 {{0, glm::uvec3(0), glm::uvec3(1)}});
     Pass pass = graph.compute("leap_distance");
     pass.read("source", source);
     pass.push(gpu::LeapDistanceParams{cells, glm::uvec3(0), cells, 0});
     pass.dispatch(cells, tiled ? glm::uvec3(128, 128, 1) : glm::uvec3(0));
-    const ResourceDesc desc = image_desc(Format::r8_uint, cells);
+    const ResourceDesc desc = image_desc(Format::r32_uint, cells);
     graph.keep(pass.write("leap", into ? graph.import("leap", into->import()) : graph.create("leap", desc)));
     return graph;
 }
@@ -105,14 +105,14 @@ TEST_CASE_FIXTURE(Fixture, "a dispatch split into tiles gives what one dispatch 
     const auto run = [&](const glm::uvec3& tile) {
         FrameGraph graph;
         const Resource buffer = graph.fill(graph.create("zero", buffer_desc(cells.x * cells.y * cells.z * 4)), 0);
-        Resource source = graph.copy_to_image(buffer, graph.create("source", image_desc(Format::r8_uint, cells)),
+        Resource source = graph.copy_to_image(buffer, graph.create("source", image_desc(Format::r32_uint, cells)),
                                               {{0, glm::uvec3(0), cells}});
         Pass pass = graph.compute("leap_distance");
         pass.read("source", source);
         pass.push(gpu::LeapDistanceParams{cells, glm::uvec3(0), cells, 0});
         pass.dispatch(cells, tile);
         const uint32_t back =
-            graph.read_back(pass.write("leap", graph.create("leap", image_desc(Format::r8_uint, cells))));
+            graph.read_back(pass.write("leap", graph.create("leap", image_desc(Format::r32_uint, cells))));
         const gpu::FrameResult result = executor.run(graph);
         return std::pair(result.read_backs[back], result.passes[2].dispatches);
     };
@@ -256,7 +256,7 @@ TEST_CASE_FIXTURE(Fixture, "a pass that disagrees with its kernel is refused by 
         return message_of([&] { executor.run(graph); });
     };
     const auto image = [&](FrameGraph& graph, const char* name) {
-        return graph.create(name, image_desc(Format::r8_uint, cells));
+        return graph.create(name, image_desc(Format::r32_uint, cells));
     };
     const auto filled = [&](FrameGraph& graph) {
         const Resource zero = graph.fill(graph.create("zero", buffer_desc(8 * 8 * 8 * 4)), 0);
@@ -362,7 +362,7 @@ TEST_CASE("of a frame that was submitted in part nobody counts on what it has do
     unsetenv("VK_INSTANCE_LAYERS");
     unsetenv("SHVR_FAULTS");
     const gpu::Storage kept =
-        fixture.memory.create("kept", image_desc(Format::r8_uint, cells), gpu::Placement::device, "a test");
+        fixture.memory.create("kept", image_desc(Format::r32_uint, cells), gpu::Placement::device, "a test");
     CHECK(kept.import().state != UNKNOWN_STATE);
     CHECK_THROWS_AS(fixture.executor.run(distances_of(cells, true, &kept)), gpu::MemoryError);
     CHECK(kept.import().state == UNKNOWN_STATE);

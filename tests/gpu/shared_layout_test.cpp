@@ -262,8 +262,8 @@ TEST_CASE("members of shared structs lie where C++ puts them")
         check_members(kernel, "push", occupancy_params());
     for (const char* kernel : {"leap_distance", "leap_distance_last"})
         check_members(kernel, "push",
-                      {MEMBER(LeapDistanceParams, cell_counts), MEMBER(LeapDistanceParams, cell_begin),
-                       MEMBER(LeapDistanceParams, cell_end), MEMBER(LeapDistanceParams, axis)});
+                      {MEMBER(LeapDistanceParams, word_counts), MEMBER(LeapDistanceParams, word_begin),
+                       MEMBER(LeapDistanceParams, word_end), MEMBER(LeapDistanceParams, axis)});
     check_members("leap_bound", "push",
                   {MEMBER(LeapBoundParams, cell_begin), MEMBER(LeapBoundParams, cell_end),
                    MEMBER(LeapBoundParams, changed_begin), MEMBER(LeapBoundParams, changed_end)});
