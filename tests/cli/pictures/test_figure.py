@@ -1,4 +1,4 @@
-"""shvr render --scale-bar, --color-bar, --legend, --axes, --title, --text: what publications need beside a picture."""
+"""shvr render --scale-bar, --color-bar, --legend, --axes, --measurements, --title, --text: what publications need beside a picture."""
 import struct
 import unittest
 
@@ -118,6 +118,28 @@ class Figure(CliTest):
         self.assertEqual(both[2], right)
         self.assertTrue(21 <= both[0] <= 23)
 
+    def test_measurements_are_drawn_with_their_values(self):
+        size = ["--size", "240x240"]  # one pixel is a tenth of a voxel
+        blank = self.picture(*size)
+        self.assertEqual(blank, self.picture(*size, "--measurements", warnings=["the session has none"]))
+        self.session = self.write_session(measurements=[{"name": "a", "from": [6, 12, 18], "to": [18, 12, 18]}],
+                                          transfer_function={"points": [
+                                              {"intensity": 0, "color": "#ff0000", "opacity": 0},
+                                              {"intensity": 100, "color": "#0000ff", "opacity": 0}]})
+        rows = self.picture(*size, "--measurements")
+        level = [x for x in range(240) if rows[60][x][0] < 0.6]  # the line lies between two rows of pixels
+        self.assertEqual(level, list(range(level[0], level[-1] + 1)))
+        self.assertTrue(57 <= level[0] <= 61 and 178 <= level[-1] <= 182, level)  # its ends have dots
+        words = [y for y in range(240) if any(color[0] < 0.6 for color in rows[y]) and not 57 <= y <= 63]
+        self.assertTrue(40 <= min(words) and max(words) < 57, words)  # above the line
+        # The label avoids other elements, and one line that is out of sight is counted.
+        self.picture(*size, "--measurements", "--set",
+                     'measurements=[{"from":[6,12,18],"to":[18,12,18]},{"from":[60,12,18],"to":[90,12,18]}]',
+                     warnings=["1 measurement of 2 cannot be seen"])
+        text = ["--text", "12,12,20:stem"]
+        both = self.picture(*size, "--measurements", *text)
+        self.assertEqual(changed(self.picture(*size, *text), both)[3], changed(blank, rows)[3])
+
     def test_a_legend_has_the_colours_of_the_groups_that_are_drawn(self):
         self.check("annotate", self.session, "--script", self.write_script("s.jsonl", [
             {"op": "paint", "brush": "fill", "group": 3, "threshold": 0, "radius": 2, "path": [[12, 12, 12]]},
@@ -174,7 +196,7 @@ class Figure(CliTest):
                               (["--text", "1,2,3"], "--text is"), (["--text", "1,2,3: "], "--text is"),
                               (["--text", "1,2,3,4:x"], "--text is"), (["--text", "1,2,nan:x"], "--text is"),
                               (["--title", "a", "--text-pixels", "1"], "--text-pixels is 1; expected a number from 6"),
-                              (["--text-pixels", "12"], "without anything to draw")]:
+                              (["--text-pixels", "12"], "without anything to draw; expected")]:
             self.check_refused("render", self.session, "-o", self.folder / "a.png", *options, says=[says], status=2)
 
     def test_a_size_on_paper_is_kept_in_the_file(self):

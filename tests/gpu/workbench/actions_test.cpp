@@ -314,6 +314,8 @@ TEST_CASE_FIXTURE(OnDevice, "each action changes what it is there for, and nothi
     applied.insert({"choose_belief", "cancel_job", "dismiss_notices", "correct_spacing",
                     // tests/window/first/test_view_kept.py
                     "settle_import",
+                    // tests/gpu/workbench/services/saver_service_test.cpp
+                    "stay_open",
                     // tests/gpu/workbench/hand_test.cpp
                     "grab_volume", "calibrate_device", "record_stylus", "stop_recording"});
     for (const ActionRow& row : action_rows()) CHECK_MESSAGE(applied.contains(row.id), row.id);

@@ -288,6 +288,14 @@ TEST_CASE("a stroke covers the pixels that it is wide, and none outside its pane
             CHECK(pixel[2] == doctest::Approx(0.25 * covered));
             CHECK(pixel[3] == doctest::Approx(covered));
         }
+    const Stroke flat{
+        .from = {2.0, 5.5}, .to = {4.5, 5.5}, .color = glm::dvec3(1.0), .width = 3.0, .has_flat_ends = true};
+    draw_strokes(image, std::span(&flat, 1), {{0, 0}, {40, 30}});
+    for (int y = 0; y < 9; ++y)
+        for (int x = 0; x < 10; ++x) {
+            const double covered = y < 4 || y > 6 || x < 2 || x > 4 ? 0.0 : x == 4 ? 0.5 : 1.0;
+            CHECK(image.rgba[4 * size_t(x + 40 * y)] == doctest::Approx(covered));
+        }
     const Stroke between{.from = {1.0, 20.0}, .to = {39.0, 20.0}, .color = glm::dvec3(1.0), .width = 1.0};
     draw_strokes(image, std::span(&between, 1), {{0, 0}, {40, 30}});
     CHECK(image.rgba[4 * size_t(20 + 40 * 19)] == doctest::Approx(0.5));

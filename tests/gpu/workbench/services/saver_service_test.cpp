@@ -96,6 +96,23 @@ TEST_CASE_FIXTURE(SaverAlone, "saver: the document is left after its save, and a
     CHECK(std::filesystem::exists(mask));
 }
 
+TEST_CASE_FIXTURE(SaverAlone, "saver: closing that waits for a file is shown, and can be taken back")
+{
+    std::string why;
+    CHECK_FALSE(saver.model().waits_to_close);
+    is_writing = true;
+    CHECK(saver.close(why) == Leave::later);
+    CHECK(saver.model().waits_to_close);
+    saver.act(StayOpen{});
+    CHECK_FALSE(saver.model().waits_to_close);
+    CHECK(saver.take_stay_open());
+    CHECK_FALSE(saver.take_stay_open());
+    CHECK(saver.close(why) == Leave::later);
+    is_writing = false;
+    CHECK_FALSE(saver.model().waits_to_close);
+    CHECK(saver.close(why) == Leave::now);
+}
+
 TEST_CASE_FIXTURE(SaverAlone, "saver: discarded work is left unsaved; quitting is asked for once")
 {
     document().annotator.paint(document().dab());

@@ -114,6 +114,58 @@ TEST_CASE("a label avoids the line of another one, and has a line to its point w
     CHECK(leader->to == glm::dvec2(200.0, 42.0));
 }
 
+TEST_CASE("labels stay where they are while a line turns, as long as no other place is much better")
+{
+    // Two lines through one point turn at different speeds. Without a memory, their labels change sides again and again.
+    const glm::dvec2 pane(400.0, 300.0), middle(200.0, 150.0);
+    const std::array<glm::dvec2, 2> sizes{glm::dvec2(120.0, 16.0), {120.0, 16.0}};
+    const auto jumps = [&](bool remembers) {
+        std::array<std::optional<glm::dvec2>, 2> last{}, before{};
+        int found = 0;
+        for (int step = 0; step < 360; ++step) {
+            std::array<LabelPlace, 2> labels;
+            std::array<LabelLine, 2> lines;
+            for (size_t i = 0; i < 2; ++i) {
+                const double angle = (i == 0 ? 1.0 : 0.4) * step * std::numbers::pi / 180.0;
+                const glm::dvec2 reach = 60.0 * glm::dvec2(std::cos(angle), std::sin(angle));
+                lines[i] = {middle - reach, middle + reach};
+                labels[i] = place_next_to(lines[i].from, lines[i].to, middle, 1.0);
+            }
+            std::array<LabelPlace, 2> placed = labels;
+            if (remembers)
+                spread(placed, sizes, pane, lines, last);
+            else
+                spread(placed, sizes, pane, lines);
+            CHECK(are_apart(placed, sizes, pane));
+            for (size_t i = 0; i < 2; ++i) {
+                last[i] = offset_of(labels[i], placed[i], sizes[i]);
+                if (before[i] && glm::distance(*last[i], *before[i]) > 30.0) ++found;
+                before[i] = last[i];
+            }
+        }
+        return found;
+    };
+    const int without = jumps(false), with = jumps(true);
+    CAPTURE(without);
+    CAPTURE(with);
+    CHECK(without > 12);
+    CHECK(2 * with < without);
+}
+
+TEST_CASE("a label returns to its line from a remembered place that is far away or covers another label")
+{
+    const glm::dvec2 pane(400.0, 300.0), from(100.0, 150.0), to(300.0, 150.0), size(80.0, 16.0);
+    const LabelPlace place = place_next_to(from, to, {200.0, 150.0}, 1.0);
+    for (const glm::dvec2& offset : {glm::dvec2(60.0, 90.0), {-40.0, -24.0}}) {
+        std::array<LabelPlace, 2> labels{LabelPlace{.at = {160.0, 126.0}}, place};
+        const std::array<glm::dvec2, 2> sizes{size, size};
+        const std::array<std::optional<glm::dvec2>, 2> last{std::nullopt, offset};
+        spread(labels, sizes, pane, {}, last);
+        CHECK(are_apart(labels, sizes, pane));
+        CHECK(glm::length(offset_of(place, labels[1], size) - glm::dvec2(-40.0, -24.0)) < 50.0);
+    }
+}
+
 TEST_CASE("the part of a line in a pane is found, and none of a line beside it")
 {
     const glm::dvec2 pane(100.0, 50.0);
