@@ -42,6 +42,7 @@ FigureForm suggested_figure(const Model& model, const FigureForm& last)
     FigureForm form = last;
     const std::string ending = std::filesystem::path(last.path).extension().string();
     form.path = base_of(model).string() + "-figure" + (ending.empty() ? ".png" : ending);
+    if (pixels_of(form.size) == glm::ivec2(0)) form.size = SizeForm();
     form.size.height = std::round(form.size.width * shape_of(model));
     form.elements = suggested_elements(model, last.elements);
     return form;

@@ -47,7 +47,7 @@ struct FigureForm {
 };
 
 /// Returns a form for the present view, with a name next to the scan, and the picture's shape. `last`: choices to use
-/// again.
+/// again, except a size that no picture can have.
 FigureForm suggested_figure(const Model& model, const FigureForm& last);
 std::string why_not(const FigureForm& form);
 /// `folder`: where relative names lie.

@@ -19,6 +19,19 @@ const char* ending_of(MovieKind kind)
     return kind == MovieKind::webm ? ".webm" : kind == MovieKind::mp4 ? ".mp4" : "";
 }
 
+bool has_length(const MovieForm& form)
+{
+    const double frames = std::round(form.seconds * form.more.frames_per_second);
+    return frames >= 1.0 && frames <= double(MAX_MOVIE_FRAMES);
+}
+
+bool has_size(const MovieForm& form)
+{
+    const glm::ivec2& size = form.more.pixels;
+    const bool is_file = form.kind != MovieKind::frames;
+    return size.x >= 1 && size.y >= 1 && !(is_file && (size.x % 2 != 0 || size.y % 2 != 0));
+}
+
 }  // namespace
 
 MovieForm suggested_movie(const Model& model, const MovieForm& last)
@@ -26,6 +39,9 @@ MovieForm suggested_movie(const Model& model, const MovieForm& last)
     MovieForm form = last;
     form.path = form.suggested = base_of(model).string() + "-movie";
     choose_kind(form, last.kind);
+    const MovieForm fresh;  // for numbers that were refused when the dialog was closed
+    if (!has_length(form)) form.seconds = fresh.seconds, form.more.frames_per_second = fresh.more.frames_per_second;
+    if (!has_size(form)) form.more.pixels = fresh.more.pixels;
     form.elements = suggested_elements(model, last.elements);
     const std::vector<std::string> names = camera_names(model.session);
     std::erase_if(form.views, [&](const std::string& view) { return std::ranges::find(names, view) == names.end(); });
@@ -45,15 +61,12 @@ std::string why_not(const MovieForm& form)
     if (trimmed(form.path).empty()) return "no name is given; expected that of a file, or of a folder for frames";
     if (form.goes_through_views && form.views.size() < 2)
         return "no way is chosen; expected at least two views to go through";
-    const double frames = std::round(form.seconds * form.more.frames_per_second);
-    if (!(frames >= 1.0 && frames <= double(MAX_MOVIE_FRAMES)))
+    if (!has_length(form))
         return sentence("the movie has ", form.seconds, " s at ", form.more.frames_per_second,
                         " frames per second; expected 1 to ", MAX_MOVIE_FRAMES, " frames");
-    const glm::ivec2& size = form.more.pixels;
-    const bool is_file = form.kind != MovieKind::frames;
-    if (size.x < 1 || size.y < 1 || (is_file && (size.x % 2 != 0 || size.y % 2 != 0)))
-        return sentence("the size is ", size.x, " x ", size.y, " pixels; expected ",
-                        is_file ? "even numbers from 2" : "numbers from 1");
+    if (!has_size(form))
+        return sentence("the size is ", form.more.pixels.x, " x ", form.more.pixels.y, " pixels; expected ",
+                        form.kind == MovieKind::frames ? "numbers from 1" : "even numbers from 2");
     return {};
 }
 

@@ -25,7 +25,8 @@ struct MovieForm {
     ElementsForm elements;
 };
 
-/// Returns a form for the present view, with a name next to the scan. `last`: choices to use again.
+/// Returns a form for the present view, with a name next to the scan. `last`: choices to use again, except numbers that
+/// no movie can have.
 MovieForm suggested_movie(const Model& model, const MovieForm& last);
 /// Chooses what is written, and suggests a name for it, unless another name was typed.
 void choose_kind(MovieForm& form, MovieKind kind);

@@ -326,6 +326,7 @@ TEST_CASE("a figure is suggested next to the scan, in the ending of the last one
     CHECK(why_not(form).empty());
     form.size.height = 0.0;
     CHECK(why_not(form).starts_with("the size is 85 x 0 pixels; expected 1 to 65536 pixels"));
+    CHECK(why_not(suggested_figure(world.model, form)).empty());
 }
 
 TEST_CASE("a figure and a movie come back from their lines, and say what they cannot be")
@@ -372,4 +373,8 @@ TEST_CASE("a movie has the frames of its seconds, and the ending of its format")
     CHECK(task_of(form, "/scans").turntable_degrees == 0.0);
     form.seconds = 0.0;
     CHECK(why_not(form).find("expected 1 to 100000 frames") != std::string::npos);
+    form.more.pixels.x = 0;
+    const MovieForm again = suggested_movie(world.model, form);
+    CHECK(again.seconds == 4.0);
+    CHECK(again.more.pixels == glm::ivec2(1280, 720));
 }
