@@ -31,31 +31,41 @@ std::string explanation(const ToolRow& row, const Keymap& keymap)
     return sentence(row.name, key_in_brackets(row.shortcut, keymap), "\n", row.hint);
 }
 
-/// Draws the tool's icon, and its name if there is room. The active tool is marked by a background and an underline.
+/// Draws a button with a sign, and its name if there is room; one in use has another background. Returns whether it was
+/// pressed.
+template <class DrawSign>
+bool signed_button(const char* name, bool has_name, bool is_used, const DrawSign& draw)
+{
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const float height = ImGui::GetFrameHeight(), sign = ImGui::GetFontSize() * 1.1f;
+    const float words = has_name ? ImGui::CalcTextSize(name).x + style.ItemInnerSpacing.x : 0.0f;
+    const float width = 2.0f * style.FramePadding.x + sign + words;
+    ImGui::PushStyleColor(ImGuiCol_Button, color_of(is_used ? ColorRole::chosen : ColorRole::bar));
+    const bool is_pressed = ImGui::Button(sentence("##", name).c_str(), {width, height});
+    ImGui::PopStyleColor();
+    const ImVec2 begin = ImGui::GetItemRectMin();
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const ImU32 color = ImGui::GetColorU32(ImGuiCol_Text);  // paler where the button is disabled
+    draw(Pen{list, {begin.x + style.FramePadding.x, begin.y + 0.5f * (height - sign)}, sign, color});
+    if (has_name)
+        list.AddText({begin.x + style.FramePadding.x + sign + style.ItemInnerSpacing.x, begin.y + style.FramePadding.y},
+                     color, name);
+    return is_pressed;
+}
+
+/// Draws the button of a tool. The active tool is marked by a background and an underline.
 void tool_button(const ToolRow& row, bool has_name, const Model& model, Actions& actions)
 {
     const bool is_used = model.tool() == row.tool;
-    const ImGuiStyle& style = ImGui::GetStyle();
-    const float height = ImGui::GetFrameHeight(), sign = ImGui::GetFontSize() * 1.1f;
-    const float name = has_name ? ImGui::CalcTextSize(row.name).x + style.ItemInnerSpacing.x : 0.0f;
-    const float width = 2.0f * style.FramePadding.x + sign + name;
     ImGui::PushID(row.shortcut);
-    ImGui::PushStyleColor(ImGuiCol_Button, color_of(is_used ? ColorRole::chosen : ColorRole::bar));
-    if (ImGui::Button("##tool", {width, height}))
+    if (signed_button(row.name, has_name, is_used, [&](const Pen& pen) { draw_sign(row.tool, pen); }))
         if (const Shortcut* const shortcut = shortcut_named(row.shortcut))
             actions.push_back(shortcut->action(model, 1.0));
-    ImGui::PopStyleColor();
     hint(explanation(row, model.keymap).c_str());
-    const ImVec2 begin = ImGui::GetItemRectMin(), end = ImGui::GetItemRectMax();
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    const ImU32 color = shade_of(ColorRole::text);
-    draw_sign(row.tool, {list, {begin.x + style.FramePadding.x, begin.y + 0.5f * (height - sign)}, sign, color});
-    if (has_name)
-        list.AddText({begin.x + style.FramePadding.x + sign + style.ItemInnerSpacing.x, begin.y + style.FramePadding.y},
-                     color, row.name);
     if (is_used) {
+        const ImVec2 begin = ImGui::GetItemRectMin(), end = ImGui::GetItemRectMax();
         const float stroke = std::max(2.0f, 0.14f * ImGui::GetFontSize());
-        list.AddRectFilled({begin.x, end.y - stroke}, end, shade_of(ColorRole::accent_strong));
+        ImGui::GetWindowDrawList()->AddRectFilled({begin.x, end.y - stroke}, end, shade_of(ColorRole::accent_strong));
     }
     ImGui::PopID();
     ImGui::SameLine(0.0f, 0.25f * ImGui::GetFontSize());
@@ -107,13 +117,11 @@ void clip_button(const Model& model, Actions& actions)
     const Shortcut* const shortcut = shortcut_named("cut_box");
     if (!shortcut) return;
     const bool is_shown = model.session.view.cut_box;
-    ImGui::PushStyleColor(ImGuiCol_Button, color_of(is_shown ? ColorRole::chosen : ColorRole::bar));
     ImGui::BeginDisabled(!model.is_open);
-    if (ImGui::Button("Clip box")) actions.push_back(shortcut->action(model, 1.0));
+    if (signed_button("Clip box", true, is_shown, draw_clip_box)) actions.push_back(shortcut->action(model, 1.0));
     ImGui::EndDisabled();
-    ImGui::PopStyleColor();
     hint((name_with_key("cut_box", model.keymap) + "\nDrag a handle to cut the volume open.").c_str());
-    ImGui::SameLine();
+    ImGui::SameLine(0.0f, 0.25f * ImGui::GetFontSize());
 }
 
 /// Draws the button that adds the oblique cutting plane, or removes it.
@@ -123,11 +131,9 @@ void plane_button(const Model& model, Actions& actions)
     const char* const id = has_plane ? "remove_oblique_cut" : "oblique_cut";
     const Shortcut* const shortcut = shortcut_named(id);
     if (!shortcut) return;
-    ImGui::PushStyleColor(ImGuiCol_Button, color_of(has_plane ? ColorRole::chosen : ColorRole::bar));
     ImGui::BeginDisabled(!model.is_open);
-    if (ImGui::Button("Cut plane")) actions.push_back(shortcut->action(model, 1.0));
+    if (signed_button("Cut plane", true, has_plane, draw_cut_plane)) actions.push_back(shortcut->action(model, 1.0));
     ImGui::EndDisabled();
-    ImGui::PopStyleColor();
     hint((name_with_key(id, model.keymap) +
           (has_plane ? "" : "\nIt removes the half towards you. Drag its handles to move and tilt it."))
              .c_str());

@@ -9,6 +9,8 @@
 namespace shvr::ui {
 
 void draw_sign(Tool tool, const Pen& pen);
+void draw_clip_box(const Pen& pen);
+void draw_cut_plane(const Pen& pen);
 /// `panel`: an id of engine/workbench/appearance/panel_rows.h; draws nothing for another.
 void draw_sign(std::string_view panel, const Pen& pen);
 

@@ -56,6 +56,21 @@ void draw_measure(const Pen& pen)
 
 }  // namespace
 
+void draw_clip_box(const Pen& pen)
+{
+    pen.frame(0.2f, 0.24f, 0.8f, 0.8f);
+    for (const float x : {0.2f, 0.8f}) pen.disc(x, 0.52f, 0.12f);
+    for (const float y : {0.24f, 0.8f}) pen.disc(0.5f, y, 0.12f);
+}
+
+void draw_cut_plane(const Pen& pen)
+{
+    pen.line(0.04f, 0.72f, 0.96f, 0.28f);
+    pen.line(0.2f, 0.64f, 0.2f, 0.9f);
+    pen.line(0.8f, 0.36f, 0.8f, 0.9f);
+    pen.line(0.2f, 0.9f, 0.8f, 0.9f);
+}
+
 void draw_sign(Tool tool, const Pen& pen)
 {
     switch (tool) {
