@@ -182,7 +182,7 @@ void mouse_words(const Model& model)
     ImGui::SameLine(0.0f, ImGui::GetFontSize());
     ImGui::AlignTextToFramePadding();
     const TextIn small(TextRole::small);
-    ImGui::TextDisabled("Mouse  %s", words.c_str());
+    ImGui::TextDisabled("%s", shortened("Mouse  " + words, ImGui::GetContentRegionAvail().x).c_str());
     hint(sentence(words, "\n", row_of(model.tool()).hint, "\nAlt + left drag turns, Shift + left drag moves.").c_str());
 }
 

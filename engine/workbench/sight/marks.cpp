@@ -128,14 +128,24 @@ private:
     void label(const glm::dvec2& at, const glm::dvec2& anchor, std::string text,
                const std::optional<glm::dvec3>& color = {})
     {
-        marks_.labels.push_back({at, anchor, std::move(text), color.value_or(ink())});
+        constexpr double CHARACTER = 7.0;  // about a character's width, in units
+        const glm::dvec2 size = units_ * glm::dvec2(CHARACTER * double(text.size()), FONT_UNITS);
+        const glm::dvec3 ink = color.value_or(ink_at(at + (0.5 - anchor) * size));
+        marks_.labels.push_back({at, anchor, std::move(text), ink});
     }
-    /// Stands out from what is around the scan: the background, or in slices the dark of the air.
-    glm::dvec3 ink() const
+    /// Returns a colour that stands out from the background, or in slices from the scan's dark air.
+    glm::dvec3 ink_at(const glm::dvec2& pixel) const
     {
         const glm::dvec4& background = model_.session.render.background;
-        const bool is_light = !is_slice() && (background.a < 0.5 || luminance_of(glm::dvec3(background)) > 0.18);
-        return is_light ? DARK : LIGHT;
+        const bool is_light = background.a < 0.5 || luminance_of(glm::dvec3(background)) > 0.18;
+        return is_light && !(is_slice() && is_over_scan(pixel)) ? DARK : LIGHT;
+    }
+    /// Whether the scan is there in a slice, rather than the background around it.
+    bool is_over_scan(const glm::dvec2& pixel) const
+    {
+        const auto a = pixel_of(glm::dvec3(0.0)), b = pixel_of(glm::dvec3(model_.volume.size) * model_.volume.spacing);
+        return a && b && glm::all(glm::greaterThan(pixel, glm::min(*a, *b))) &&
+               glm::all(glm::lessThan(pixel, glm::max(*a, *b)));
     }
 
     /// Draws the outline of the brush where it intersects the plane of the pane.
@@ -336,8 +346,9 @@ private:
         if (bar.pixels < 8.0 * units_) return;
         const glm::dvec2 end(double(pixels_.x) - 16.0 * units_, double(pixels_.y) - 14.0 * units_);
         const glm::dvec2 begin = end - glm::dvec2(bar.pixels, 0.0), rim(units_, 0.0);
-        rectangle(begin - rim, end + rim, rim_color(ink()), 5.0 * units_);
-        rectangle(begin, end, ink(), 3.0 * units_);
+        const glm::dvec3 ink = ink_at(0.5 * (begin + end));
+        rectangle(begin - rim, end + rim, rim_color(ink), 5.0 * units_);
+        rectangle(begin, end, ink, 3.0 * units_);
         marks_.lines.push_back({begin, end});
         label(end - glm::dvec2(0.0, 5.0 * units_), {1.0, 1.0},
               bar.text + (is_perspective ? " at the middle of the view" : ""));
