@@ -8,6 +8,7 @@ Results are kept in a JSON file: operations that are left out by --only stay as 
 size. The environment names the programs: SHVR and OPERATION_BENCH; without it, those of build/release.
 """
 import argparse
+import fcntl
 import json
 import os
 import platform
@@ -109,6 +110,17 @@ def agreement(name, ours, theirs, files):
     differ = output_of([PYTHON, PEER, "differ", *files])["differ"]
     return ("equal" if differ == 0 else f"{differ} voxels differ",
             1e6 * differ <= rule * files[0].stat().st_size)
+
+
+def hold(folder):
+    """Returns a lock: two runs in one folder would overwrite each other's results. It ends with the program."""
+    folder.mkdir(parents=True, exist_ok=True)
+    lock = open(folder / "editor.lock", "w")
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        sys.exit(f"tools/bench/editor.py: {folder} is used by another run; expected another --folder, or its end")
+    return lock
 
 
 def measure(name, side, rounds, folder):
@@ -234,12 +246,14 @@ def main():
     if arguments.rewrite:
         arguments.page.write_text(page_of(results))
         return
+    lock = hold(arguments.folder)
     for name in names:
         results[name] = measure(name, arguments.side, arguments.rounds, arguments.folder)
         print(f"{name}: " + ", ".join(f"{program} {run['seconds']:.2f} s" for program, run in
                                       results[name]["programs"].items()), flush=True)
         arguments.results.write_text(json.dumps(results, indent=1, sort_keys=True) + "\n")
         arguments.page.write_text(page_of(results))
+    lock.close()
 
 
 if __name__ == "__main__":
