@@ -125,6 +125,21 @@ class Figure(Seen):
         self.assertEqual(frames, ["frame-0001.png", "frame-0002.png", "frame-0003.png"])
         self.assertEqual({size_of(self.folder / folder / name) for name in frames}, {(64, 720)})
 
+    def test_closing_waits_for_a_movie_with_ways_out(self):
+        self.open_ball()
+        self.show("Movie...", MOVIE)
+        self.press("Return")
+        self.see("Movie: frame ", "Status")
+        self.press("ctrl+q")
+        self.see("The window closes once ", "Closing")
+        self.click_on("Stay open", "Closing")
+        self.see_no_more("", "Closing")
+        self.press("ctrl+q")
+        self.click_on("Cancel it and close", "Closing")
+        self.program.communicate(timeout=60)
+        self.assertEqual(self.program.returncode, 0)
+        self.assertEqual(list(self.folder.glob("*movie*")), [])
+
     def test_a_movie_goes_through_views_into_a_file(self):
         if subprocess.run(["which", "ffmpeg"], capture_output=True).returncode:
             self.skipTest("ffmpeg is not installed")
