@@ -138,8 +138,7 @@ void Opener::read_next()
         const std::string name = short_name(path);
         if (flush) flush();
         const OpeningOptions options{.measure = {.progress = reporter.begin("measuring " + name)}};
-        const std::filesystem::path saved =
-            goes_on && settings.empty() ? session_saved_for(path) : std::filesystem::path();
+        const std::filesystem::path saved = goes_on ? session_saved_for(path) : std::filesystem::path();
         std::filesystem::path input = saved.empty() ? path : saved;
         std::optional<Session> pictured{};
         OpenedSession opened = open_session_for_first_look(input, settings, options);
@@ -291,7 +290,7 @@ void Opener::show_again()
         return say(sentence(path, " cannot be shown again: ", error.what(), "; it is saved"), Weight::error);
     }
     document_ = std::move(away_);
-    say(document_->shown_name() + " is open again");
+    say(document_->shown_name() + " is shown again");
 }
 
 /// Resets all state of services that belongs to the previous document.

@@ -85,6 +85,7 @@ void Photographer::drop_large(const char* by)
     const std::string kept = screenshots_.large()->kept();
     const std::string name = screenshots_.large()->name();
     screenshots_.drop_large();
+    others_.stay_open();
     say(sentence("The ", name, " was cancelled by ", by, kept.empty() ? "" : "; ", kept), Weight::warning);
 }
 

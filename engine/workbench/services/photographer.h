@@ -14,6 +14,7 @@ public:
     /// Functions of other services that it calls.
     struct Others {
         Call<glm::uvec2()> pixels;  ///< size of the displayed picture
+        Call<void()> stay_open;     ///< takes back the wish to close the window, if that waits for a picture
     };
     Photographer(Desk& desk, Others others);
     void act(const Screenshot& action);

@@ -26,6 +26,8 @@ Reloader::~Reloader() = default;
 void Reloader::want(const RenderSettings& before)
 {
     if (others_.is_opening()) fail(others_.opening_name(), " is being opened; expected that to have ended");
+    if (others_.is_drawing_picture())
+        fail("a picture or movie is being drawn; wait for it, or cancel it, before the volume is loaded otherwise");
     const Session& session = document_->session;
     renderer_.check_sizes(*document_->source, session.render, shows_occlusion(session.light));
     if (reload_) jobs_.cancel(reload_->number);  // its result is no longer wanted

@@ -18,7 +18,8 @@ public:
     struct Others {
         Call<bool()> is_opening;
         Call<std::string_view()> opening_name;
-        Call<void()> load_alone;  ///< unloads the document, then loads it again
+        Call<void()> load_alone;          ///< unloads the document, then loads it again
+        Call<bool()> is_drawing_picture;  ///< a large one, or a movie
         Call<void(const char* by)> drop_screenshot;
         Call<void()> note_edit;
         Call<void()> look_again;
@@ -28,7 +29,7 @@ public:
 
     void advance() override;
     bool advances_without_document() const override { return true; }
-    /// Requests a reload. Fails if the volume is too large for the session's settings. `before`: the earlier settings.
+    /// Requests a reload. Fails if the volume is too large for the session's settings, or a movie is being drawn. `before`: the earlier settings.
     void want(const RenderSettings& before);
     bool is_wanted() const { return reload_ != nullptr; }
     /// Cancels the reload. Returns whether there was one.

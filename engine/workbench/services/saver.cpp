@@ -250,7 +250,14 @@ void Saver::act(const Quit& action)
 
 void Saver::act(const StayOpen&)
 {
-    waits_to_close_ = quits_ = false;
+    stay_open();
+    say("The window stays open");
+}
+
+void Saver::stay_open()
+{
+    if (!waits_to_close_) return;
+    waits_to_close_ = quits_ = told_of_writers_ = false;
     stays_open_ = true;
 }
 

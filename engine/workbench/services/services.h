@@ -36,7 +36,8 @@ struct Services {
                     {.take_session = [this](Session session) { settings.take_session(std::move(session)); },
                      .record_settings = [this] { settings.record_settings(); }}};
     WindowState window{desk, keeper};
-    Photographer photographer{desk, {.pixels = [this] { return viewer.pixels(); }}};
+    Photographer photographer{
+        desk, {.pixels = [this] { return viewer.pixels(); }, .stay_open = [this] { saver.stay_open(); }}};
     Viewer viewer{desk,
                   {.note_edit = [this] { settings.note_edit(); },
                    .note_to_keep = [this] { settings.note_to_keep(); },
@@ -118,6 +119,7 @@ struct Services {
                                opener.put_away();
                                opener.bring_back();
                            },
+                       .is_drawing_picture = [this] { return photographer.has_large(); },
                        .drop_screenshot = [this](const char* by) { photographer.drop_large(by); },
                        .note_edit = [this] { settings.note_edit(); },
                        .look_again = [this] { viewer.look_again(); }}};

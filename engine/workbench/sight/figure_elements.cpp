@@ -251,21 +251,23 @@ private:
     {
         const std::vector<Measurement>& all = scene_.session.measurements;
         if (all.empty()) {
-            if (is_first) leave_out("the measurements", "the session has none");
+            if (is_first) left_out_.emplace_back("the measurements are left out: the session has none");
             return;
         }
         std::vector<LabelLine> sides, arcs;
         std::vector<LabelPlace> places;
         std::vector<std::string> texts;
+        bool is_shortened = false;
         for (size_t i = 0; i < all.size(); ++i) {
             const MeasureLines shown = lines_of(all[i], pane_, scene_.volume, line_ / FONT_UNITS);
             sides.insert(sides.end(), shown.sides.begin(), shown.sides.end());
             arcs.insert(arcs.end(), shown.arc.begin(), shown.arc.end());
             if (!shown.label) continue;
             places.push_back(*shown.label);
-            texts.push_back(
-                shortened(label_of(all[i], i + 1, scene_.volume), size_.x - edge_, line_, drawn_.draw_texts()));
+            texts.push_back(fitted(label_of(all[i], i + 1, scene_.volume), size_.x - edge_, is_shortened));
         }
+        if (is_shortened)
+            left_out_.emplace_back("names of measurements are shortened: the picture is too small for them");
         if (is_first && pane_.kind == Pane::Kind::main && places.size() < all.size())
             left_out_.push_back(sentence(counted(int64_t(all.size() - places.size()), "measurement"), " of ",
                                          all.size(), " cannot be seen: outside of the picture"));
@@ -273,14 +275,29 @@ private:
         drawn_.lines(arcs, drawn_.ink(), std::max(1.0, 0.07 * line_));
         for (const LabelLine& side : sides)
             for (const glm::dvec2& end : {side.from, side.to}) drawn_.dot(end, 0.15 * line_);
-        write_labels(texts, std::move(places), sides);
+        std::vector<LabelLine> avoided = sides;
+        for (const LabelLine& side : sides)
+            for (const glm::dvec2& end : {side.from, side.to}) avoided.push_back(avoided_around(end, 0.5 * line_));
+        write_labels(texts, std::move(places), avoided);
+    }
+    /// Returns the label, its name shortened to what the width leaves beside the value.
+    std::string fitted(const MeasureLabel& label, double width, bool& is_shortened) const
+    {
+        const std::string whole = label.text();
+        const std::vector<std::string> parts{whole, ": " + label.value};
+        const std::vector<double> widths = widths_of(parts, line_, drawn_.draw_texts());
+        if (widths[0] <= width) return whole;
+        is_shortened = true;
+        return MeasureLabel{shortened(label.name, width - widths[1], line_, drawn_.draw_texts()), label.value}.text();
     }
     /// Writes labels of lines where they cover as little as possible.
     void write_labels(const std::vector<std::string>& texts, std::vector<LabelPlace> places,
                       const std::vector<LabelLine>& lines)
     {
+        const glm::dvec2 margin = LABEL_MARGIN * (line_ / FONT_UNITS);
         std::vector<glm::dvec2> sizes;
-        for (const double width : widths_of(texts, line_, drawn_.draw_texts())) sizes.emplace_back(width, line_);
+        for (const double width : widths_of(texts, line_, drawn_.draw_texts()))
+            sizes.push_back(glm::dvec2(width, line_) + 2.0 * margin);
         const size_t count = texts.size();
         const std::vector<LabelPlace> before = places;
         for (const Box& box : drawn_.taken()) {  // which stay
@@ -296,7 +313,7 @@ private:
             const Box box{begin, begin + sizes[i]};
             covering += !drawn_.is_free(box);
             drawn_.take(box);
-            words.push_back({begin, {0.0, 0.0}, texts[i]});
+            words.push_back({begin + margin, {0.0, 0.0}, texts[i]});
             if (const auto leader = leader_of(before[i], places[i], sizes[i])) leaders.push_back(*leader);
         }
         drawn_.lines(leaders, drawn_.ink(), std::max(1.0, 0.05 * line_));

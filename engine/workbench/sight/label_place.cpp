@@ -132,10 +132,13 @@ void spread(std::span<LabelPlace> labels, std::span<const glm::dvec2> sizes, con
     std::vector<LabelBox> taken;
     for (size_t i = 0; i < labels.size(); ++i)
         if (labels[i].away == glm::dvec2(0.0)) taken.push_back(box_of(labels[i], sizes[i]));
+    std::vector<LabelLine> avoided(lines.begin(), lines.end());
     for (size_t i = 0; i < labels.size(); ++i) {
         if (labels[i].away == glm::dvec2(0.0)) continue;
-        labels[i] = free_place(labels[i], sizes[i], pane, taken, lines, i < last.size() ? last[i] : std::nullopt);
+        const LabelPlace before = labels[i];
+        labels[i] = free_place(before, sizes[i], pane, taken, avoided, i < last.size() ? last[i] : std::nullopt);
         taken.push_back(box_of(labels[i], sizes[i]));
+        if (const auto leader = leader_of(before, labels[i], sizes[i])) avoided.push_back(*leader);
     }
 }
 

@@ -28,6 +28,12 @@ struct LabelLine {
     glm::dvec2 from{0.0}, to{0.0};
 };
 
+/// A line with which labels avoid a point, such as the end of a measured line.
+inline LabelLine avoided_around(const glm::dvec2& point, double reach)
+{
+    return {point - glm::dvec2(reach, 0.0), point + glm::dvec2(reach, 0.0)};
+}
+
 /// Moves labels that may be moved, so that they lie within the pane and cover no other label: in order, after all
 /// labels that stay, on either side of their points, near these, and off the lines where that is not far. Where there
 /// is no free place, a label covers as little as possible. `sizes`: of the texts, with their margins, in pixels.

@@ -280,7 +280,10 @@ private:
             else
                 line(side.from, side.to, MEASURED, 2.0);
             marks_.lines.push_back(side);
-            for (const glm::dvec2& at : {side.from, side.to}) ring(at, 3.5 * units_, MEASURED);
+            for (const glm::dvec2& at : {side.from, side.to}) {
+                ring(at, 3.5 * units_, MEASURED);
+                marks_.lines.push_back(avoided_around(at, 8.0 * units_));
+            }
         }
         for (const LabelLine& piece : lines.arc) line(piece.from, piece.to, MEASURED);
         if (!lines.label) return;
@@ -293,7 +296,7 @@ private:
         const size_t count = model_.measurements.size();
         for (size_t i = 0; i < count; ++i) {
             const Measurement& each = model_.measurements[i];
-            measurement(each, i + 1, label_of(each, i + 1, model_.volume), false);
+            measurement(each, i + 1, label_of(each, i + 1, model_.volume).text(), false);
         }
         if (model_.measuring.empty() || !is_for_screen_) return;
         Measurement begun{{model_.measuring.begin(), model_.measuring.end()}, model_.session.probe.measure, ""};

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/base/text.h"
+#include "engine/look/camera_motion.h"
 #include "engine/workbench/sight/hits.h"
 #include "engine/workbench/sight/words.h"
 
@@ -21,6 +21,23 @@ public:
     {
         const auto at = project(pane_.shot.camera, pixels_, point);
         return at ? std::optional(at->pixel) : std::nullopt;
+    }
+    /// Returns the part of a line in front of the camera; null: none.
+    std::optional<LabelLine> line_of(glm::dvec3 a, glm::dvec3 b) const
+    {
+        constexpr double NEAREST = 1e-3;  // depth, of the target's
+        const Camera& camera = pane_.shot.camera;
+        if (camera.projection == Camera::Projection::perspective) {
+            const glm::dvec3 forward = axes_of(camera).forward;
+            const double nearest = NEAREST * glm::distance(camera.eye, camera.target);
+            const double from = glm::dot(a - camera.eye, forward) - nearest;
+            const double to = glm::dot(b - camera.eye, forward) - nearest;
+            if (from <= 0.0 && to <= 0.0) return std::nullopt;
+            if (from < 0.0) a = glm::mix(a, b, from / (from - to));
+            if (to < 0.0) b = glm::mix(b, a, to / (to - from));
+        }
+        const auto from = pixel_of(a), to = pixel_of(b);
+        return from && to ? std::optional(LabelLine{*from, *to}) : std::nullopt;
     }
     /// Whether the pane shows the line; a slice, if it crosses the plane or comes within a voxel of it.
     bool shows(const glm::dvec3& a, const glm::dvec3& b) const
@@ -74,13 +91,12 @@ MeasureLines lines_of(const Measurement& measured, const Pane& pane, const Volum
     glm::dvec2 sum(0.0);
     for (size_t i = 1; i < points.size(); ++i) {
         const glm::dvec3 begin = points[i - 1] * volume.spacing, end = points[i] * volume.spacing;
-        const auto from = in_pane.pixel_of(begin), to = in_pane.pixel_of(end);
-        if (!from || !to || !in_pane.shows(begin, end)) continue;
-        lines.sides.push_back({*from, *to});
+        const auto side = in_pane.line_of(begin, end);
+        if (!side || !in_pane.shows(begin, end)) continue;
+        lines.sides.push_back(*side);
         lines.is_last_open = is_open && i + 1 == points.size();
-        if (part_in_pane(*from, *to, pane.pixels()) && (!labelled || i == points.size() / 2))
-            labelled = lines.sides.back();
-        sum += *from + *to;
+        if (part_in_pane(side->from, side->to, pane.pixels()) && (!labelled || i == points.size() / 2)) labelled = side;
+        sum += side->from + side->to;
     }
     if (!labelled) return lines;
     if (measured.kind == MeasureKind::angle && points.size() == 3) lines.arc = in_pane.arc_of(measured);
@@ -89,9 +105,12 @@ MeasureLines lines_of(const Measurement& measured, const Pane& pane, const Volum
     return lines;
 }
 
-std::string label_of(const Measurement& measured, size_t number, const VolumeInfo& volume)
+MeasureLabel label_of(const Measurement& measured, size_t number, const VolumeInfo& volume)
 {
-    return sentence(shortened_name(name_of(measured, number)), ": ", value_in_words(measured, volume));
+    std::string name = shortened_name(name_of(measured, number));
+    std::ranges::replace_if(
+        name, [](char c) { return uint8_t(c) < ' '; }, ' ');  // line ends
+    return {std::move(name), value_in_words(measured, volume)};
 }
 
 }  // namespace shvr::ui

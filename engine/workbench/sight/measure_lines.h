@@ -13,7 +13,8 @@ namespace shvr::ui {
 
 /// Pixels of the pane.
 struct MeasureLines {
-    std::vector<LabelLine> sides;     ///< in slices those that cross the plane or come within a voxel of it
+    /// What is in front of the camera; in slices, sides that cross the plane or come within a voxel of it.
+    std::vector<LabelLine> sides;
     bool is_last_open = false;        ///< the last of `sides` is not set yet
     std::vector<LabelLine> arc;       ///< between the sides of an angle, in short pieces; empty: not seen, or no angle
     std::optional<LabelPlace> label;  ///< null: no side is in the pane
@@ -23,7 +24,11 @@ struct MeasureLines {
 MeasureLines lines_of(const Measurement& measured, const Pane& pane, const VolumeInfo& volume, double units,
                       bool is_open = false);
 
-/// Returns "Path 2: 1.25 mm", of a name of any length its beginning. `number` counts from 1.
-std::string label_of(const Measurement& measured, size_t number, const VolumeInfo& volume);
+/// The parts of the label "Path 2: 1.25 mm", in one line; of a name of any length its beginning. `number` counts from 1.
+struct MeasureLabel {
+    std::string name, value;
+    std::string text() const { return name.empty() ? value : name + ": " + value; }
+};
+MeasureLabel label_of(const Measurement& measured, size_t number, const VolumeInfo& volume);
 
 }  // namespace shvr::ui

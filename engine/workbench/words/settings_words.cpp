@@ -150,6 +150,10 @@ std::string special_sentence(const Session& was, const Session& is)
     }
     if (!(was.transfer_function == is.transfer_function))
         return sentence_about(was.transfer_function, is.transfer_function);
+    if (was.render.paging != is.render.paging)
+        return is.render.paging == Paging::always  ? "The volume is loaded in pieces, as the view needs them"
+               : is.render.paging == Paging::never ? "The volume is loaded as a whole"
+                                                   : "The volume is loaded in pieces only if it is too large otherwise";
     if (const auto quality = quality_of(is.render); quality && was.render != is.render)
         return sentence("Render quality: ", quality->name);
     if (was.light.occlusion.mapping != is.light.occlusion.mapping)

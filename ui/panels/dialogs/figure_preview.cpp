@@ -43,9 +43,37 @@ void follow_picture(const Model& model, bool begins)
     ++shown_page.revision;
 }
 
-/// Returns a smaller stamp: each of its pixels covers what those that it stands for cover on average.
+/// If a stamp is a rectangle, whose borders may cover parts of pixels, returns its corners; otherwise null.
+std::optional<std::pair<glm::dvec2, glm::dvec2>> rectangle_of(const Stamp& stamp)
+{
+    constexpr double OPAQUE = 255.0;
+    const glm::ivec2 last = stamp.pixels - 1;
+    if (last.x < 0 || last.y < 0) return std::nullopt;
+    const auto covered = [&](int x, int y) { return stamp.coverage[size_t(y * stamp.pixels.x + x)] / OPAQUE; };
+    for (int y = 0; y <= last.y; ++y)
+        for (int x = 0; x <= last.x; ++x) {
+            const bool is_inside = x > 0 && x < last.x && y > 0 && y < last.y;
+            if (covered(x, y) < (is_inside ? 1.0 : 1.0 / OPAQUE)) return std::nullopt;
+        }
+    const glm::ivec2 middle = stamp.pixels / 2;
+    const double most = covered(middle.x, middle.y);
+    const glm::dvec2 first_part(covered(0, middle.y) / most, covered(middle.x, 0) / most);
+    const glm::dvec2 last_part(covered(last.x, middle.y) / most, covered(middle.x, last.y) / most);
+    return std::pair{glm::dvec2(stamp.begin) + 1.0 - first_part, glm::dvec2(stamp.begin + last) + last_part};
+}
+
+/// Returns a smaller stamp: each of its pixels covers what those that it stands for cover on average. Rectangles end at
+/// whole pixels, so that those that touch leave no gap.
 Stamp smaller(const Stamp& stamp, double scale)
 {
+    if (const auto rectangle = rectangle_of(stamp)) {
+        const glm::ivec2 from(glm::round(scale * rectangle->first)), to(glm::round(scale * rectangle->second));
+        if (glm::all(glm::lessThan(from, to)))
+            return {.begin = from,
+                    .pixels = to - from,
+                    .coverage = std::vector<uint8_t>(size_t(to.x - from.x) * size_t(to.y - from.y), 255),
+                    .color = stamp.color};
+    }
     const glm::ivec2 begin(glm::floor(scale * glm::dvec2(stamp.begin)));
     const glm::ivec2 end(glm::ceil(scale * glm::dvec2(stamp.begin + stamp.pixels)));
     Stamp small{.begin = begin, .pixels = end - begin, .coverage{}, .color = stamp.color};

@@ -117,7 +117,7 @@ TEST_CASE_FIXTURE(OpenerAlone, "opener: the document is put away and comes back 
     await_end();
     REQUIRE(desk.document);
     CHECK(document().annotator.history().undoable() == steps);
-    CHECK(says("is open again"));
+    CHECK(says("is shown again"));
 }
 
 TEST_CASE_FIXTURE(OpenerAlone, "opener: a lost device is no reason to wait for a volume on another machine")

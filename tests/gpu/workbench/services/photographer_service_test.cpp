@@ -14,7 +14,7 @@ using namespace shvr::ui;
 namespace {
 
 struct PhotographerAlone : DeskWithScan {
-    Photographer photographer{desk, {.pixels = [] { return glm::uvec2(48, 40); }}};
+    Photographer photographer{desk, {.pixels = [] { return glm::uvec2(48, 40); }, .stay_open = notes("stay_open")}};
 };
 
 }  // namespace

@@ -33,11 +33,12 @@ private:
 };
 
 struct ReloaderAlone : DeskWithScan {
-    bool is_opening = false;
+    bool is_opening = false, is_drawing = false;
     Reloader reloader{desk,
                       {.is_opening = [this] { return is_opening; },
                        .opening_name = [] { return std::string_view("other.json"); },
                        .load_alone = notes("load_alone"),
+                       .is_drawing_picture = [this] { return is_drawing; },
                        .drop_screenshot = notes("drop_screenshot"),
                        .note_edit = notes("note_edit"),
                        .look_again = notes("look_again")}};
@@ -146,5 +147,9 @@ TEST_CASE_FIXTURE(ReloaderAlone, "reloader: nothing is reloaded while another fi
 {
     is_opening = true;
     CHECK(contains(error_of([&] { want_filtered(); }), "other.json is being opened"));
+    CHECK_FALSE(reloader.is_wanted());
+    is_opening = false;
+    is_drawing = true;
+    CHECK(contains(error_of([&] { want_filtered(); }), "movie is being drawn"));
     CHECK_FALSE(reloader.is_wanted());
 }

@@ -107,6 +107,9 @@ TEST_CASE_FIXTURE(SaverAlone, "saver: closing that waits for a file is shown, an
     CHECK_FALSE(saver.model().waits_to_close);
     CHECK(saver.take_stay_open());
     CHECK_FALSE(saver.take_stay_open());
+    CHECK(says("stays open"));
+    saver.stay_open();  // nothing waits
+    CHECK_FALSE(saver.take_stay_open());
     CHECK(saver.close(why) == Leave::later);
     is_writing = false;
     CHECK_FALSE(saver.model().waits_to_close);
