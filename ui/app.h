@@ -113,7 +113,7 @@ private:
     bool drew_complete_ = false;  ///< whether the last drawn interface reports the picture as sharp
     bool drew_cut_box_ = false, drew_jobs_ = false, choosers_were_busy_ = false;
     uint64_t drawn_messages_ = 0, drawn_openings_ = 0;
-    std::vector<LabelMemory> label_memories_;  ///< of each pane
+    std::vector<LabelMemory> label_memories_;  ///< one per pane
     int drawn_windows_ = 0;                    ///< number of windows of the interface in the last frame
     glm::dvec3 drawn_probe_voxel_{0.0};
     RunReport report_;

@@ -7,9 +7,9 @@
 
 #include "engine/base/text.h"
 #include "engine/look/camera_motion.h"
+#include "engine/workbench/sight/figure_measures.h"
 #include "engine/workbench/sight/figure_pane.h"
 #include "engine/workbench/sight/figure_texts.h"
-#include "engine/workbench/sight/measure_lines.h"
 #include "engine/workbench/sight/words.h"
 
 namespace shvr::ui {
@@ -62,7 +62,8 @@ public:
             if (elements_.color_bar) color_bar();
             if (elements_.legend) legend();
         }
-        if (elements_.measurements && pane_.kind != Pane::Kind::map && !pane_.shot.right_eye) measurements(is_first);
+        if (elements_.measurements && pane_.kind != Pane::Kind::map && !pane_.shot.right_eye)
+            draw_measurements(drawn_, pane_, scene_.session.measurements, scene_.volume, is_first, left_out_);
         if (is_first) {
             for (const FigureText& text : elements_.texts) text_at_point(text);
         }
@@ -244,83 +245,6 @@ private:
         drawn_.write(names, line_);
         drawn_.take(box);
         above_axes_ = box.begin.y;
-    }
-
-    /// Draws measurements. Their labels cover no other element, and are near their lines or have a thin line to them.
-    void measurements(bool is_first)
-    {
-        const std::vector<Measurement>& all = scene_.session.measurements;
-        if (all.empty()) {
-            if (is_first) left_out_.emplace_back("the measurements are left out: the session has none");
-            return;
-        }
-        std::vector<LabelLine> sides, arcs;
-        std::vector<LabelPlace> places;
-        std::vector<std::string> texts;
-        bool is_shortened = false;
-        for (size_t i = 0; i < all.size(); ++i) {
-            const MeasureLines shown = lines_of(all[i], pane_, scene_.volume, line_ / FONT_UNITS);
-            sides.insert(sides.end(), shown.sides.begin(), shown.sides.end());
-            arcs.insert(arcs.end(), shown.arc.begin(), shown.arc.end());
-            if (!shown.label) continue;
-            places.push_back(*shown.label);
-            texts.push_back(fitted(label_of(all[i], i + 1, scene_.volume), size_.x - edge_, is_shortened));
-        }
-        if (is_shortened)
-            left_out_.emplace_back("names of measurements are shortened: the picture is too small for them");
-        if (is_first && pane_.kind == Pane::Kind::main && places.size() < all.size())
-            left_out_.push_back(sentence(counted(int64_t(all.size() - places.size()), "measurement"), " of ",
-                                         all.size(), " cannot be seen: outside of the picture"));
-        drawn_.lines(sides, drawn_.ink(), std::max(1.0, 0.1 * line_));
-        drawn_.lines(arcs, drawn_.ink(), std::max(1.0, 0.07 * line_));
-        for (const LabelLine& side : sides)
-            for (const glm::dvec2& end : {side.from, side.to}) drawn_.dot(end, 0.15 * line_);
-        std::vector<LabelLine> avoided = sides;
-        for (const LabelLine& side : sides)
-            for (const glm::dvec2& end : {side.from, side.to}) avoided.push_back(avoided_around(end, 0.5 * line_));
-        write_labels(texts, std::move(places), avoided);
-    }
-    /// Returns the label, its name shortened to what the width leaves beside the value.
-    std::string fitted(const MeasureLabel& label, double width, bool& is_shortened) const
-    {
-        const std::string whole = label.text();
-        const std::vector<std::string> parts{whole, ": " + label.value};
-        const std::vector<double> widths = widths_of(parts, line_, drawn_.draw_texts());
-        if (widths[0] <= width) return whole;
-        is_shortened = true;
-        return MeasureLabel{shortened(label.name, width - widths[1], line_, drawn_.draw_texts()), label.value}.text();
-    }
-    /// Writes labels of lines where they cover as little as possible.
-    void write_labels(const std::vector<std::string>& texts, std::vector<LabelPlace> places,
-                      const std::vector<LabelLine>& lines)
-    {
-        const glm::dvec2 margin = LABEL_MARGIN * (line_ / FONT_UNITS);
-        std::vector<glm::dvec2> sizes;
-        for (const double width : widths_of(texts, line_, drawn_.draw_texts()))
-            sizes.push_back(glm::dvec2(width, line_) + 2.0 * margin);
-        const size_t count = texts.size();
-        const std::vector<LabelPlace> before = places;
-        for (const Box& box : drawn_.taken()) {  // which stay
-            places.push_back({.at = box.begin});
-            sizes.push_back(box.end - box.begin);
-        }
-        spread(places, sizes, size_, lines);
-        size_t covering = 0;
-        std::vector<Words> words;
-        std::vector<LabelLine> leaders;
-        for (size_t i = 0; i < count; ++i) {
-            const glm::dvec2 begin = places[i].at - places[i].anchor * sizes[i];
-            const Box box{begin, begin + sizes[i]};
-            covering += !drawn_.is_free(box);
-            drawn_.take(box);
-            words.push_back({begin + margin, {0.0, 0.0}, texts[i]});
-            if (const auto leader = leader_of(before[i], places[i], sizes[i])) leaders.push_back(*leader);
-        }
-        drawn_.lines(leaders, drawn_.ink(), std::max(1.0, 0.05 * line_));
-        drawn_.write(words, line_);
-        if (covering > 0)
-            left_out_.push_back(sentence(counted(int64_t(covering), "label"),
-                                         " of measurements cannot be read: the picture is too small for all of them"));
     }
 
     void text_at_point(const FigureText& text)

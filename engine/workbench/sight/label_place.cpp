@@ -55,14 +55,47 @@ double distance_from(const LabelBox& box, const glm::dvec2& point)
     return glm::distance(glm::clamp(point, box.begin, box.end), point);
 }
 
+double distance_from(const LabelLine& line, const glm::dvec2& point)
+{
+    const glm::dvec2 way = line.to - line.from;
+    const double square = glm::dot(way, way);
+    const double share = square > 0.0 ? std::clamp(glm::dot(point - line.from, way) / square, 0.0, 1.0) : 0.0;
+    return glm::distance(point, line.from + share * way);
+}
+
+/// Returns the distance between a box and a line; 0 where they meet.
+double distance_between(const LabelBox& box, const LabelLine& line)
+{
+    if (part_in_pane(line.from - box.begin, line.to - box.begin, box.end - box.begin)) return 0.0;
+    double least = std::min(distance_from(box, line.from), distance_from(box, line.to));
+    for (const glm::dvec2& corner :
+         {box.begin, box.end, glm::dvec2(box.begin.x, box.end.y), glm::dvec2(box.end.x, box.begin.y)})
+        least = std::min(least, distance_from(line, corner));
+    return least;
+}
+
+/// Returns by how much a label is nearer to a line of another label than to its own line, which goes through `point`.
+double nearer_to_others(const LabelBox& box, const glm::dvec2& point, std::span<const LabelLine> lines)
+{
+    constexpr double ON_LINE = 0.5;  // pixels
+    double own = distance_from(box, point), others = std::numeric_limits<double>::infinity();
+    for (const LabelLine& line : lines) {
+        double& least = distance_from(line, point) < ON_LINE ? own : others;
+        least = std::min(least, distance_between(box, line));
+    }
+    return std::max(own - others, 0.0);
+}
+
 /// Tries places ever farther from the label's point, on both sides, then along the line, and returns the cheapest. To
-/// cover a label costs far more than to cover a line, and that as much as to be some lines of text farther away. The
-/// `last` offset is preferred to places that are nearer by fewer than STAY lines of text.
+/// cover a label costs far more than to cover a line or to be nearer to another line than to the own one, and that as
+/// much as to be some lines of text farther away. The `last` offset is preferred to places that are nearer by fewer
+/// than STAY lines of text.
 LabelPlace free_place(const LabelPlace& place, const glm::dvec2& size, const glm::dvec2& pane,
                       const std::vector<LabelBox>& taken, std::span<const LabelLine> lines,
                       const std::optional<glm::dvec2>& last)
 {
-    constexpr double MAX_STEPS = 400.0, OF_LABELS = 100.0, OF_LINES = 0.5, OF_DISTANCE = 0.15, STAY = 3.0;
+    constexpr double MAX_STEPS = 400.0, OF_LABELS = 100.0, OF_LINES = 0.5, OF_OTHERS = 0.3, OF_DISTANCE = 0.15,
+                     STAY = 3.0, ROUNDING = 1e-6;
     const double height = std::max(std::min(size.x, size.y), 1.0), pace = 0.5 * height;
     const glm::dvec2 away = pace * place.away / glm::length(place.away), along(-away.y, away.x);
     const glm::dvec2 point = place.at - place.away;
@@ -78,8 +111,9 @@ LabelPlace free_place(const LabelPlace& place, const glm::dvec2& size, const glm
         for (const LabelLine& line : lines) crossed += length_in(line, box);
         const double farther = std::max(distance_from(box, point) - glm::length(place.away), 0.0);
         if (covered > 0.0) covered += height * height;  // however little: never for the sake of the distance
-        const double cost = OF_LABELS * covered + height * (OF_LINES * crossed + OF_DISTANCE * farther) - bonus;
-        if (cost < least) least = cost, best = moved;
+        double cost = OF_LABELS * covered + height * (OF_LINES * crossed + OF_DISTANCE * farther) - bonus;
+        if (cost < least) cost += height * OF_OTHERS * nearer_to_others(box, point, lines);
+        if (cost < least - ROUNDING) least = cost, best = moved;
     };
     if (last)
         try_place({point + *last + place.anchor * size, place.anchor, place.away}, glm::dvec2(0.0),

@@ -26,7 +26,7 @@ struct Label {
     std::string text;
     glm::dvec3 color{1.0};  ///< linear light
     glm::dvec2 away{0.0};   ///< as in LabelPlace
-    size_t key = 0;         ///< of what it names, the same in each frame; 0: none
+    size_t key = 0;         ///< identifies what it names in each frame; 0: none
 };
 /// Texts over pictures have a rim, so that they can be read on any picture: dark around a light ink, else light. Its
 /// width in pixels, for a font of this height.

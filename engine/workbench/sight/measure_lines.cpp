@@ -60,11 +60,11 @@ std::vector<LabelLine> InPane::arc_of(const Measurement& measured) const
 {
     constexpr int PARTS = 24;
     constexpr double SHARE = 0.3;  // radius of the arc, of the shorter side
-    constexpr double LEAST_DEGREES = 0.1;
+    constexpr double MIN_DEGREES = 0.1;
     const glm::dvec3 vertex = measured.points[1] * spacing_;
     const glm::dvec3 a = measured.points[0] * spacing_ - vertex, b = measured.points[2] * spacing_ - vertex;
     const auto angle = angle_of(measured, spacing_);
-    if (!angle || *angle < LEAST_DEGREES || *angle > 180.0 - LEAST_DEGREES) return {};
+    if (!angle || *angle < MIN_DEGREES || *angle > 180.0 - MIN_DEGREES) return {};
     if (!shows(vertex, vertex + a) || !shows(vertex, vertex + b)) return {};
     const glm::dvec3 along = glm::normalize(a), across = glm::normalize(b - glm::dot(b, along) * along);
     const double radius = SHARE * std::min(glm::length(a), glm::length(b));

@@ -1,0 +1,98 @@
+#include "engine/workbench/sight/figure_measures.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/base/text.h"
+#include "engine/workbench/sight/figure_texts.h"
+#include "engine/workbench/sight/measure_lines.h"
+
+namespace shvr::ui {
+
+namespace {
+
+/// Widths, in lines of text.
+constexpr double SIDE = 0.1, ARC = 0.07, LEADER = 0.05, DOT_RADIUS = 0.15, AVOIDED_AROUND_DOTS = 0.5;
+
+/// Returns the label, its name shortened so that it fits into the width with the value.
+std::string fitted(const MeasureLabel& label, double width, const FigurePane& drawn, bool& is_shortened)
+{
+    const std::string whole = label.text();
+    const std::vector<std::string> parts{whole, ": " + label.value};
+    const std::vector<double> widths = widths_of(parts, drawn.line(), drawn.draw_texts());
+    if (widths[0] <= width) return whole;
+    is_shortened = true;
+    return MeasureLabel{shortened(label.name, width - widths[1], drawn.line(), drawn.draw_texts()), label.value}.text();
+}
+
+/// Writes labels of lines where they cover as little as possible. Returns the number of those that cover something.
+size_t write_labels(FigurePane& drawn, const std::vector<std::string>& texts, std::vector<LabelPlace> places,
+                    std::span<const LabelLine> lines)
+{
+    const double line = drawn.line();
+    const glm::dvec2 margin = LABEL_MARGIN * (line / FONT_UNITS);
+    std::vector<glm::dvec2> sizes;
+    for (const double width : widths_of(texts, line, drawn.draw_texts()))
+        sizes.push_back(glm::dvec2(width, line) + 2.0 * margin);
+    const std::vector<LabelPlace> before = places;
+    for (const FigurePane::Box& box : drawn.taken()) {  // which stay
+        places.push_back({.at = box.begin});
+        sizes.push_back(box.end - box.begin);
+    }
+    spread(places, sizes, drawn.size(), lines);
+    size_t covering = 0;
+    std::vector<FigurePane::Words> words;
+    std::vector<LabelLine> leaders;
+    for (size_t i = 0; i < texts.size(); ++i) {
+        const glm::dvec2 begin = places[i].at - places[i].anchor * sizes[i];
+        const FigurePane::Box box{begin, begin + sizes[i]};
+        covering += !drawn.is_free(box);
+        drawn.take(box);
+        words.push_back({begin + margin, {0.0, 0.0}, texts[i]});
+        if (const auto leader = leader_of(before[i], places[i], sizes[i])) leaders.push_back(*leader);
+    }
+    drawn.lines(leaders, drawn.ink(), std::max(1.0, LEADER * line));
+    drawn.write(words, line);
+    return covering;
+}
+
+}  // namespace
+
+void draw_measurements(FigurePane& drawn, const Pane& pane, std::span<const Measurement> all, const VolumeInfo& volume,
+                       bool is_first, std::vector<std::string>& left_out)
+{
+    if (all.empty()) {
+        if (is_first) left_out.emplace_back("the measurements are left out: the session has none");
+        return;
+    }
+    const double line = drawn.line();
+    std::vector<LabelLine> sides, arcs;
+    std::vector<LabelPlace> places;
+    std::vector<std::string> texts;
+    bool is_shortened = false;
+    for (size_t i = 0; i < all.size(); ++i) {
+        const MeasureLines shown = lines_of(all[i], pane, volume, line / FONT_UNITS);
+        sides.insert(sides.end(), shown.sides.begin(), shown.sides.end());
+        arcs.insert(arcs.end(), shown.arc.begin(), shown.arc.end());
+        if (!shown.label) continue;
+        places.push_back(*shown.label);
+        texts.push_back(fitted(label_of(all[i], i + 1, volume), drawn.size().x - drawn.edge(), drawn, is_shortened));
+    }
+    if (is_shortened) left_out.emplace_back("names of measurements are shortened: the picture is too small for them");
+    if (is_first && pane.kind == Pane::Kind::main && places.size() < all.size())
+        left_out.push_back(sentence(counted(int64_t(all.size() - places.size()), "measurement"), " of ", all.size(),
+                                    " cannot be seen: outside of the picture"));
+    drawn.lines(sides, drawn.ink(), std::max(1.5, SIDE * line));
+    drawn.lines(arcs, drawn.ink(), std::max(1.2, ARC * line));
+    std::vector<LabelLine> avoided = sides;
+    for (const LabelLine& side : sides)
+        for (const glm::dvec2& end : {side.from, side.to}) {
+            drawn.dot(end, DOT_RADIUS * line);
+            avoided.push_back(avoided_around(end, AVOIDED_AROUND_DOTS * line));
+        }
+    if (const size_t covering = write_labels(drawn, texts, std::move(places), avoided); covering > 0)
+        left_out.push_back(sentence(counted(int64_t(covering), "label"),
+                                    " of measurements cannot be read: the picture is too small for all of them"));
+}
+
+}  // namespace shvr::ui
