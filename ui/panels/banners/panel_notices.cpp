@@ -154,11 +154,12 @@ float notices(const Model& model, const glm::vec2& begin, float width, Actions& 
         top += read_only_banner(model, begin, width, actions);
     if (model.disputes.empty()) put_off.clear();
     if (!put_off.empty() && put_off == model.session_path) top += put_off_banner({begin.x, top}, width);
-    if (model.waits_to_close) top += closing_banner(model, {begin.x, top}, width, actions);
     if (!model.trouble.empty()) top += trouble_banner(model, {begin.x, top}, width, actions);
     if (model.unfinished) top += unfinished_banner(model, {begin.x, top}, width, actions);
     if (!model.looks_like_labels.empty()) top += labels_banner(model, {begin.x, top}, width, actions);
     if (!model.recovered.empty()) top += recovered_banner(model, {begin.x, top}, width, actions);
+    // Lies over the picture, which keeps its size: a movie leaves the device little time to draw it again.
+    if (model.waits_to_close) closing_banner(model, {begin.x, top}, width, actions);
     question_of_belief(model, actions);
     question_of_use(model, actions);
     return top - begin.y;
