@@ -1,8 +1,8 @@
 #pragma once
 // Builds the leap grid of shaders/leap.h from the value ranges of the cells: four stages over the cells, run when the
-// transfer function, the visible groups or the painted bricks change. Cost: one thread per word of four cells and stage,
-// with at most 2 * LEAP_LIMIT loads per thread. Each stage is a separate pass, so that other work can run between
-// stages. If only some cells changed, each stage covers only the cells that the change can affect.
+// transfer function, the visible groups or the painted bricks change. Cost: one thread per word of four cells and
+// stage, with at most 2 * LEAP_LIMIT loads per thread. Each stage is a separate pass, so that other work can run
+// between stages. If only some cells changed, each stage covers only the cells that the change can affect.
 //
 //   occupancy -> scratch[0] -> distance along x -> scratch[1] -> along y -> scratch[0] -> along z -> leap
 //

@@ -1,5 +1,5 @@
-// One axis of the Chebyshev distance transform, for a word of four cells along x per thread (leap.h). The maximum norm is
-// separable, so three such passes are exact.
+// One axis of the Chebyshev distance transform, for a word of four cells along x per thread (leap.h). The maximum norm
+// is separable, so three such passes are exact.
 // LAST: writes the entries of the grid.
 // variants: LAST
 #version 460

@@ -5,8 +5,9 @@
 //   main        loads the volume onto the device in slices          -> Scene
 //   main        replaces the scene
 //
-// Until the last step the old scene stays on display, and failures and cancellation restore its settings. If the device has no room for both scenes and the document, the document is unloaded
-// until the new scene is loaded, as when another document is opened.
+// Until the last step the old scene stays on display, and failures and cancellation restore its settings. If the device
+// has no room for both scenes and the document, the document is unloaded until the new scene is loaded, as when another
+// document is opened.
 
 #include "engine/workbench/desk/service.h"
 
@@ -29,7 +30,8 @@ public:
 
     void advance() override;
     bool advances_without_document() const override { return true; }
-    /// Requests a reload. Fails if the volume is too large for the session's settings, or a movie is being drawn. `before`: the earlier settings.
+    /// Requests a reload. Fails if the volume is too large for the session's settings, or a movie is being drawn.
+    /// `before`: the earlier settings.
     void want(const RenderSettings& before);
     bool is_wanted() const { return reload_ != nullptr; }
     /// Cancels the reload. Returns whether there was one.

@@ -1,7 +1,7 @@
 #pragma once
 // Elements that publications need over a picture: scale bar, colour bar, legend of the groups, title, measurements,
-// texts at points and the directions of the axes. Drawn without boxes, in black or white, whichever stands out from the background,
-// with a thin rim in the other. Pure; any thread, except for the drawer of texts.
+// texts at points and the directions of the axes. Drawn without boxes, in black or white, whichever stands out from the
+// background, with a thin rim in the other. Pure; any thread, except for the drawer of texts.
 
 #include <span>
 #include <string>
@@ -45,8 +45,8 @@ struct FigureScene {
     std::span<const uint8_t> groups;
 };
 /// Title, legend, colour bar, texts and axes are drawn in the first pane. No element is drawn over another, except for
-/// texts with no free place near their points, and the lines of measurements. Line ends in title and texts begin new lines. `left_out`:
-/// receives a sentence for each element that is left out or shortened, with the reason.
+/// texts with no free place near their points, and the lines of measurements. Line ends in title and texts begin new
+/// lines. `left_out`: receives a sentence for each element that is left out or shortened, with the reason.
 Figure figure_of(const FigureElements& elements, const FigureScene& scene, const TextDrawer& draw_texts,
                  std::vector<std::string>& left_out);
 

@@ -24,7 +24,7 @@ struct MeasureLines {
 MeasureLines lines_of(const Measurement& measured, const Pane& pane, const VolumeInfo& volume, double units,
                       bool is_open = false);
 
-/// The parts of the label "Path 2: 1.25 mm", in one line; of a name of any length its beginning. `number` counts from 1.
+/// The parts of the label "Path 2: 1.25 mm", in one line; a long name is cut. `number` counts from 1.
 struct MeasureLabel {
     std::string name, value;
     std::string text() const { return name.empty() ? value : name + ": " + value; }

@@ -1,6 +1,6 @@
 #pragma once
-// shvr render --scale-bar, --color-bar, --legend, --axes, --measurements, --title, --text: what is drawn over a picture, or over each
-// frame of a movie, for publications.
+// shvr render --scale-bar, --color-bar, --legend, --axes, --measurements, --title, --text: what is drawn over a
+// picture, or over each frame of a movie, for publications.
 
 #include <optional>
 #include <string>

@@ -89,8 +89,8 @@ Stamp smaller(const Stamp& stamp, double scale)
     return small;
 }
 
-/// Lays out the elements and the lines of slices and maps over the page as large as it will be, so that they are where they will be, and returns them
-/// as small as the preview.
+/// Lays out the elements and the lines of slices and maps over the page as large as it will be, so that they are where
+/// they will be, and returns them as small as the preview.
 Figure elements_over(const FigureTask& task, const Model& model, Session session, double scale,
                      std::vector<std::string>& left_out)
 {

@@ -116,7 +116,7 @@ TEST_CASE("a label avoids the line of another one, and has a line to its point w
 
 TEST_CASE("labels stay where they are while a line turns, as long as no other place is much better")
 {
-    // Two lines through one point turn at different speeds. Without a memory, their labels change sides again and again.
+    // Two lines through one point turn at different speeds. Without a memory, their labels change sides often.
     const glm::dvec2 pane(400.0, 300.0), middle(200.0, 150.0);
     const std::array<glm::dvec2, 2> sizes{glm::dvec2(120.0, 16.0), {120.0, 16.0}};
     const auto jumps = [&](bool remembers) {
