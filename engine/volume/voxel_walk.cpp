@@ -215,10 +215,15 @@ private:
 
 void read_boxes(const VolumeSource& source, const VoxelWalk& walk, const TakeBox& take)
 {
-    if (walk.boxes() == 1) {  // needs no thread
+    if (walk.boxes() == 0) return;  // nothing is stored
+    const auto bytes = uint64_t(count_of(walk.box(0).size())) * bytes_of(source.info().type);
+    if (walk.boxes() == 1 || bytes > uint64_t(SLAB_BYTES)) {  // one buffer, where a row of blocks is large
         ReadAhead::Read only;
-        ReadAhead::read(source, walk.box(0), only);
-        return take(only.box, only.voxels, only.failure);
+        for (int64_t i = 0; i < walk.boxes(); ++i) {
+            ReadAhead::read(source, walk.box(i), only);
+            take(only.box, only.voxels, only.failure);
+        }
+        return;
     }
     ReadAhead ahead(source, walk);
     for (int64_t i = 0; i < walk.boxes(); ++i) {
