@@ -116,8 +116,8 @@ TEST_CASE("a label avoids the line of another one, and has a line to its point w
 
 TEST_CASE("labels stay where they are while a line turns, as long as no other place is much better")
 {
-    // Two lines through one point turn at different speeds. Without a memory, their labels change sides often.
-    const glm::dvec2 pane(400.0, 300.0), middle(200.0, 150.0);
+    // Two lines turn to and fro about the level, where their labels change from above their middles to a side.
+    const glm::dvec2 pane(400.0, 300.0), middle(200.0, 150.0), apart(0.0, 60.0);
     const std::array<glm::dvec2, 2> sizes{glm::dvec2(120.0, 16.0), {120.0, 16.0}};
     const auto jumps = [&](bool remembers) {
         std::array<std::optional<glm::dvec2>, 2> last{}, before{};
@@ -126,10 +126,11 @@ TEST_CASE("labels stay where they are while a line turns, as long as no other pl
             std::array<LabelPlace, 2> labels;
             std::array<LabelLine, 2> lines;
             for (size_t i = 0; i < 2; ++i) {
-                const double angle = (i == 0 ? 1.0 : 0.4) * step * std::numbers::pi / 180.0;
+                const double angle = 0.03 * std::sin((i == 0 ? 0.1 : 0.07) * step);
                 const glm::dvec2 reach = 60.0 * glm::dvec2(std::cos(angle), std::sin(angle));
-                lines[i] = {middle - reach, middle + reach};
-                labels[i] = place_next_to(lines[i].from, lines[i].to, middle, 1.0);
+                const glm::dvec2 centre = middle + double(i) * apart;
+                lines[i] = {centre - reach, centre + reach};
+                labels[i] = place_next_to(lines[i].from, lines[i].to, centre, 1.0);
             }
             std::array<LabelPlace, 2> placed = labels;
             if (remembers)
@@ -149,7 +150,7 @@ TEST_CASE("labels stay where they are while a line turns, as long as no other pl
     CAPTURE(without);
     CAPTURE(with);
     CHECK(without > 12);
-    CHECK(2 * with < without);
+    CHECK(with <= 2);
 }
 
 TEST_CASE("a label returns to its line from a remembered place that is far away or covers another label")
