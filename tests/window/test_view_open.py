@@ -168,6 +168,16 @@ class Open(Seen):
         self.assertTrue(any(f"Opened {scan}, and goes on with {session.name}" in line for line in messages), messages)
         self.assertEqual(json.loads(session.read_text())["render"]["step_voxels"], 0.7)
 
+        # A setting of the command line changes that setting alone.
+        self.open_scan(scan, "--set", "blend.size=0.5", preferences={"hints_seen": 3})
+        self.do("mousemove", *self.middle(), pause_s=0)
+        self.what_follows(lambda: self.press("F2"), "set view.volume")
+        self.press("Ctrl+S")
+        self.until(lambda: any(seen["text"].startswith("Saved") for seen in self.seen()), "Saved")
+        messages = self.finish()["messages"]
+        self.assertFalse(any("were changed since" in line for line in messages), messages)
+        self.assertEqual(json.loads(session.read_text())["render"]["step_voxels"], 0.7)
+
 
 if __name__ == "__main__":
     unittest.main()
