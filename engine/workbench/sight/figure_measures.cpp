@@ -76,7 +76,9 @@ void draw_measurements(FigurePane& drawn, const Pane& pane, std::span<const Meas
         arcs.insert(arcs.end(), shown.arc.begin(), shown.arc.end());
         if (!shown.label) continue;
         places.push_back(*shown.label);
-        texts.push_back(fitted(label_of(all[i], i + 1, volume), drawn.size().x - drawn.edge(), drawn, is_shortened));
+        MeasureLabel label = label_of(all[i], i + 1, volume);
+        if (shown.is_part) label.value += SEEN_IN_PART;
+        texts.push_back(fitted(label, drawn.size().x - drawn.edge(), drawn, is_shortened));
     }
     if (is_shortened) left_out.emplace_back("names of measurements are shortened: the picture is too small for them");
     if (is_first && pane.kind == Pane::Kind::main && places.size() < all.size())

@@ -98,6 +98,7 @@ MeasureLines lines_of(const Measurement& measured, const Pane& pane, const Volum
         if (part_in_pane(side->from, side->to, pane.pixels()) && (!labelled || i == points.size() / 2)) labelled = side;
         sum += side->from + side->to;
     }
+    lines.is_part = lines.sides.size() + 1 < points.size();
     if (!labelled) return lines;
     if (measured.kind == MeasureKind::angle && points.size() == 3) lines.arc = in_pane.arc_of(measured);
     const auto seen = part_in_pane(labelled->from, labelled->to, pane.pixels());

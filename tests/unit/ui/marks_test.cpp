@@ -6,6 +6,7 @@
 
 #include <doctest/doctest.h>
 
+#include "engine/workbench/sight/measure_lines.h"
 #include "tests/support/model_world.h"
 
 using namespace shvr;
@@ -85,6 +86,36 @@ TEST_CASE("A slice says which it is, shows the nodes that it passes through, and
     Panes other;
     other.world.trace.apply(TraceNodeChange{0, TraceNode{{60.0, 100.0, 100.0}, 4.0, 1}, {}}, Direction::forwards);
     CHECK(ends_around(other.over(other.slice), {110.0, 150.0}, 4.0) == 0);
+}
+
+TEST_CASE("A measurement of which a slice shows some sides says so, and what is behind the camera is cut off")
+{
+    Panes panes;
+    const Measurement path{
+        {{10.0, 50.0, 50.0}, {30.0, 50.0, 50.0}, {30.0, 50.0, 90.0}, {40.0, 50.0, 90.0}}, MeasureKind::path, "a\nb"};
+    const VolumeInfo& volume = panes.world.volume;
+    CHECK(label_of(path, 1, volume).text() == "a b: 140 mm");
+    CHECK_FALSE(lines_of(path, panes.view, volume, 1.0).is_part);
+    const MeasureLines in_slice = lines_of(path, panes.slice, volume, 1.0);
+    CHECK(in_slice.is_part);
+    CHECK(in_slice.sides.size() == 2);  // one in the plane, one through it
+    panes.world.session.measurements = {path};
+    panes.world.model.measurements = panes.world.session.measurements;
+    CHECK(Panes::says(panes.over(panes.view), "a b: 140 mm"));
+    CHECK(Panes::says(panes.over(panes.slice), "a b: 140 mm (seen in part)"));
+
+    // From the middle of the scan a line that begins behind the eye is seen where it is in front.
+    Camera& camera = panes.view.shot.camera;
+    camera.projection = Camera::Projection::perspective;
+    camera.eye = {100.0, 100.0, 100.0};
+    camera.target = {100.0, 100.0, 0.0};
+    const Measurement through{{{50.0, 60.0, 90.0}, {50.0, 60.0, 10.0}}, MeasureKind::distance, ""};
+    const MeasureLines seen = lines_of(through, panes.view, volume, 1.0);
+    REQUIRE(seen.sides.size() == 1);
+    REQUIRE(seen.label.has_value());
+    CHECK_FALSE(seen.is_part);
+    const Measurement behind{{{50.0, 60.0, 90.0}, {50.0, 60.0, 70.0}}, MeasureKind::distance, ""};
+    CHECK(lines_of(behind, panes.view, volume, 1.0).sides.empty());
 }
 
 TEST_CASE("The link that a new node would get is drawn before it is made, with its length")
