@@ -143,14 +143,28 @@ VoxelBox VoxelWalk::box(int64_t index) const
 
 namespace {
 
-/// Reads the boxes of a walk in order into two buffers, on a thread of its own.
+struct ReadBox {
+    VoxelBox box{};
+    std::vector<std::byte> voxels{};
+    std::exception_ptr failure{};
+};
+
+void read(const VolumeSource& source, const VoxelBox& box, ReadBox& into)
+{
+    into.box = box;
+    into.failure = nullptr;
+    try {
+        into.voxels.resize(size_t(count_of(box.size())) * bytes_of(source.info().type));
+        source.read(box, into.voxels);
+    } catch (...) {
+        into.failure = std::current_exception();
+    }
+}
+
+/// Reads the boxes of a walk in order into two buffers, on a thread of its own. After a box that cannot be read it
+/// waits until that is given back, since the thread that takes it may read its parts.
 class ReadAhead {
 public:
-    struct Read {
-        VoxelBox box{};
-        std::vector<std::byte> voxels{};
-        std::exception_ptr failure{};
-    };
     ReadAhead(const VolumeSource& source, const VoxelWalk& walk) : source_(source), walk_(walk)
     {
         thread_ = std::jthread([this, waits_are_over = waits_of_this_thread()](const std::stop_token& stop) {
@@ -159,7 +173,7 @@ public:
         });
     }
     /// Waits for the next box; it stays until give_back().
-    Read& wait()
+    ReadBox& wait()
     {
         std::unique_lock lock(mutex_);
         changed_.wait(lock, [&] { return read_ > taken_; });
@@ -175,36 +189,24 @@ public:
 private:
     void read_all(const std::stop_token& stop)
     {
+        int64_t ahead = 2;
         for (int64_t i = 0; i < walk_.boxes(); ++i) {
             {
                 std::unique_lock lock(mutex_);
-                if (!changed_.wait(lock, stop, [&] { return taken_ + 2 > i; })) return;
+                if (!changed_.wait(lock, stop, [&] { return taken_ + ahead > i; })) return;
             }
-            Read& next = buffers_[size_t(i % 2)];
+            ReadBox& next = buffers_[size_t(i % 2)];
             read(source_, walk_.box(i), next);
+            ahead = next.failure ? 1 : 2;
             const std::lock_guard lock(mutex_);
             ++read_;
             changed_.notify_all();
         }
     }
 
-public:
-    static void read(const VolumeSource& source, const VoxelBox& box, Read& into)
-    {
-        into.box = box;
-        into.failure = nullptr;
-        try {
-            into.voxels.resize(size_t(count_of(box.size())) * bytes_of(source.info().type));
-            source.read(box, into.voxels);
-        } catch (...) {
-            into.failure = std::current_exception();
-        }
-    }
-
-private:
     const VolumeSource& source_;
     const VoxelWalk& walk_;
-    std::array<Read, 2> buffers_;
+    std::array<ReadBox, 2> buffers_;
     std::mutex mutex_;
     std::condition_variable_any changed_;
     int64_t read_ = 0, taken_ = 0;  ///< numbers of boxes
@@ -218,16 +220,16 @@ void read_boxes(const VolumeSource& source, const VoxelWalk& walk, const TakeBox
     if (walk.boxes() == 0) return;  // nothing is stored
     const auto bytes = uint64_t(count_of(walk.box(0).size())) * bytes_of(source.info().type);
     if (walk.boxes() == 1 || bytes > uint64_t(SLAB_BYTES)) {  // one buffer, where a row of blocks is large
-        ReadAhead::Read only;
+        ReadBox only;
         for (int64_t i = 0; i < walk.boxes(); ++i) {
-            ReadAhead::read(source, walk.box(i), only);
+            read(source, walk.box(i), only);
             take(only.box, only.voxels, only.failure);
         }
         return;
     }
     ReadAhead ahead(source, walk);
     for (int64_t i = 0; i < walk.boxes(); ++i) {
-        ReadAhead::Read& next = ahead.wait();
+        ReadBox& next = ahead.wait();
         take(next.box, next.voxels, next.failure);
         ahead.give_back();
     }

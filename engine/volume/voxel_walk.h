@@ -39,8 +39,8 @@ private:
 };
 
 /// Calls `take` with each box of the walk in order and its voxels, while another thread reads the next box into a
-/// second buffer. `failure`: why the box could not be read; null if it was. The source is used by one thread at a time,
-/// except while `take` runs. An exception from `take` ends the walk. Boxes above 16 MiB share one buffer.
+/// second buffer. `failure`: why the box could not be read; null if it was. Only if not may `take` use the source: no
+/// other thread does meanwhile. An exception from `take` ends the walk. Boxes above 16 MiB share one buffer.
 using TakeBox =
     std::function<void(const VoxelBox& box, std::span<std::byte> voxels, const std::exception_ptr& failure)>;
 void read_boxes(const VolumeSource& source, const VoxelWalk& walk, const TakeBox& take);

@@ -1,12 +1,16 @@
 #include "engine/volume/volume.h"
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <thread>
 
 #include <doctest/doctest.h>
 
+#include "engine/volume/gaps.h"
 #include "tests/support/volume_files.h"
 
 using namespace shvr;
@@ -273,6 +277,36 @@ TEST_CASE("measuring reads at most 16 MiB at a time, also where one slice is lar
     CHECK(measure(wide).mean == 1.0);
     CHECK(wide.largest <= size_t{16} << 20);
     CHECK(wide.total == size_t{80} << 20);
+}
+
+TEST_CASE("one thread at a time reads a volume that is measured, also where parts cannot be read")
+{
+    class Broken : public VolumeSource {
+    public:
+        Broken() : VolumeSource(info_of()) {}
+        void read(const VoxelBox& box, std::span<std::byte> voxels) const override
+        {
+            if (users.fetch_add(1) > 0) overlaps = true;
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+            std::memset(voxels.data(), 3, voxels.size());
+            users.fetch_sub(1);
+            if (box.lower.z <= 2 && box.upper.z > 2) fail("slice 2 is gone");
+        }
+        static VolumeInfo info_of()
+        {
+            VolumeInfo info;
+            info.size = {4096, 1024, 16};
+            return info;
+        }
+        mutable std::atomic<int> users = 0;
+        mutable std::atomic<bool> overlaps = false;
+    };
+    const Broken broken;
+    Gaps gaps;
+    CHECK(measure(broken, {.gaps = &gaps}).mean == 3.0);
+    CHECK(gaps.voxels() == 4096 * 1024);
+    CHECK_FALSE(broken.overlaps);
+    CHECK(error_of([&] { measure(broken); }) == "slice 2 is gone");
 }
 
 TEST_CASE("of a volume too large to go through, a coarser level is measured and said")
