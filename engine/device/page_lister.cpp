@@ -65,16 +65,17 @@ bool KnownBricks::is_empty(const PageSight& sight, const BrickKey& key) const
            !is_always_shown(sight.view, key);
 }
 
-uint32_t KnownBricks::entry_of(const PageSight& sight, const BrickKey& leaf) const
+uint32_t KnownBricks::finest_entry(BrickKey key) const
 {
-    constexpr uint32_t NOTHING = 1u << gpu::PAGE_DISTANCE_SHIFT;
-    const std::optional<uint32_t> own = slots_.find(leaf);
-    if (!own && is_empty(sight, leaf)) return NOTHING;
-    if (own) return uint32_t(leaf.level) << gpu::PAGE_LEVEL_SHIFT | *own;
-    for (BrickKey key = parent_of(leaf); key.level < levels_; key = parent_of(key))
+    for (; key.level < levels_; key = parent_of(key))
         if (const std::optional<uint32_t> slot = slots_.find(key))
             return uint32_t(key.level) << gpu::PAGE_LEVEL_SHIFT | *slot;
-    return NOTHING;
+    return NO_BRICK;
+}
+
+uint32_t KnownBricks::entry_of(const PageSight& sight, const BrickKey& leaf) const
+{
+    return !slots_.contains(leaf) && is_empty(sight, leaf) ? NO_BRICK : finest_entry(leaf);
 }
 
 // ---- Lists ----------------------------------------------------------------------------------------------------------

@@ -78,8 +78,12 @@ public:
     /// The directory's entry for a leaf (shaders/pages.h): nothing if the leaf shows nothing, otherwise the leaf's
     /// brick or, if missing, its finest ancestor on the device.
     uint32_t entry_of(const PageSight& sight, const BrickKey& leaf) const;
+    /// The entry of a leaf whose finest brick on the device is `key` or an ancestor of it.
+    uint32_t finest_entry(BrickKey key) const;
 
 private:
+    static constexpr uint32_t NO_BRICK = 1u << gpu::PAGE_DISTANCE_SHIFT;
+
     bool is_always_shown(const PageView& view, const BrickKey& key) const;
 
     VolumeInfo info_;

@@ -2,13 +2,14 @@
 // A volume of paged bricks: any size, any budget.
 //
 //   view -> PageTree (which bricks, page_tree.h), and its directory, listed on a thread of their own (page_lister.h)
-//        -> rays mark what they visit -> wanted bricks, nearest first
+//        -> rays mark what they visit -> wanted bricks, coarser levels first, nearest first within each
 //        -> BrickStore (host budget, loader threads)
 //        -> atlas (device budget, least recently used is evicted) -> directory
 //
 // Only bricks that rays visit are requested: bricks outside the view, empty, cut away or hidden behind something opaque
 // are not loaded. A missing brick is drawn from the finest coarser one available; the coarsest levels are always on the
-// device. While the view rests, needed bricks are never evicted, so nothing is loaded twice and the picture only
+// device. A picture on a screen refines one level at a time, so that neighbours are at most a level apart; where the
+// caller waits for a complete picture, or slots are scarce, only the bricks of that picture are loaded. While the view rests, needed bricks are never evicted, so nothing is loaded twice and the picture only
 // improves.
 //
 // The cost of a brick that arrives or is evicted does not depend on how many bricks the view has: its directory entries
@@ -129,13 +130,15 @@ private:
                    const std::optional<MaskBinding>& painted);
     Resource upload_directory(FrameGraph& graph);
     std::vector<BufferRegion> changed_regions(std::vector<uint32_t> entries, std::vector<uint32_t>& values) const;
-    void update_wants();
+    void add_steps(std::vector<BrickKey>& keys, size_t first) const;
+    void update_wants(bool for_steps);
     void take_bricks(std::vector<VoxelBox>& changed);
     std::vector<BrickKey> set_region(const RegionBricks& region);
     void pin_coarse_levels();
     uint32_t entry_of(const BrickKey& leaf) const;
     void set_entry(uint32_t entry, uint32_t value);
     void fill_leaf(uint32_t leaf);
+    void fill_below(const BrickKey& key);
     void fill_directory();
     void note(const BrickEvent& change);
     /// Notes a change that has no BrickEvent kind of its own but affects how this brick is drawn.

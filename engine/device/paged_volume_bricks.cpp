@@ -238,7 +238,27 @@ bool PagedVolume::list_wants(std::vector<BrickKey>& keys)
     return true;
 }
 
-void PagedVolume::update_wants()
+/// Adds coarser bricks through which the picture refines, before the bricks of `keys` from `first` on: neighbours in the
+/// picture are then at most a level apart. Adds only levels for which there is room besides `keys`, coarsest first.
+void PagedVolume::add_steps(std::vector<BrickKey>& keys, size_t first) const
+{
+    auto steps = std::vector<std::vector<BrickKey>>(size_t(levels_));
+    std::unordered_set<BrickKey, BrickKeyHash> seen;
+    for (size_t i = first; i < keys.size(); ++i)
+        for (BrickKey key = parent_of(keys[i]); key.level < levels_ && !slots_.contains(key); key = parent_of(key)) {
+            if (!seen.insert(key).second) break;
+            if (state_of(key) == Presence::missing) steps[size_t(key.level)].push_back(key);
+        }
+    const bool is_roomy = keys.size() + seen.size() <= slots_.free_count();
+    size_t room = is_roomy ? slots_.free_count() : slots_.room();
+    room -= std::min(room, keys.size());
+    std::vector<BrickKey> added;
+    for (auto level = steps.rbegin(); level != steps.rend() && added.size() + level->size() <= room; ++level)
+        added.insert(added.end(), level->begin(), level->end());
+    keys.insert(keys.begin() + std::ptrdiff_t(first), added.begin(), added.end());
+}
+
+void PagedVolume::update_wants(bool for_steps)
 {
     if (!std::exchange(wants_are_stale_, false)) return;
     std::vector<BrickKey> needed;
@@ -253,15 +273,16 @@ void PagedVolume::update_wants()
         forget_unvisited();
         ++reached_revision_;
         slots_.needs_changed();
-        keys = std::move(needed);
+        keys = needed;
         is_limited_ = !list_wants(keys);
     }
+    if (for_steps && !is_limited_) add_steps(keys, needed.size());
     store_->want(std::move(keys));
 }
 
 std::vector<VoxelBox> PagedVolume::advance(bool wait, const Progress& progress)
 {
-    update_wants();
+    update_wants(!wait && !rays_wait_);
     const size_t wanted = std::max<size_t>(pending_, 1);
     std::vector<VoxelBox> changed;
     try {
@@ -280,7 +301,8 @@ std::vector<VoxelBox> PagedVolume::advance(bool wait, const Progress& progress)
 void PagedVolume::take_bricks(std::vector<VoxelBox>& changed)
 {
     for (const BrickStore::Finished& finished : store_->take(BrickAtlas::BATCH)) {
-        pending_ -= std::min<size_t>(pending_, leaf_is_reached(finished.key) || around_.contains(finished.key));
+        const bool is_wanted = leaf_is_reached(finished.key) || around_.contains(finished.key);
+        pending_ -= std::min<size_t>(pending_, is_wanted);
         const bool for_region =
             region_.contains(finished.key) || std::ranges::find(coarse_, finished.key) != coarse_.end();
         if (!finished.texels) {
@@ -289,7 +311,7 @@ void PagedVolume::take_bricks(std::vector<VoxelBox>& changed)
             continue;
         }
         if (!place(finished.key, *finished.texels, for_region)) {
-            is_limited_ = true;
+            is_limited_ = is_limited_ || is_wanted || for_region;
             continue;
         }
         changed.push_back(voxels_of(finished.key, info().size));

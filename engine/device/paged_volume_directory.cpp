@@ -34,6 +34,20 @@ void PagedVolume::fill_leaf(uint32_t leaf)
         set_entry(tree().entries_of_leaves[i], entry);
 }
 
+/// Brings the entries below a brick that has arrived or was evicted up to date. The leaves whose finest brick it is, or
+/// was, all show the same now, so only those that show no brick are looked up.
+void PagedVolume::fill_below(const BrickKey& key)
+{
+    const uint32_t now = known_.finest_entry(key);
+    for_each_entry_below(tree(), key, [&](uint32_t entry, uint32_t leaf) {
+        const uint32_t shown = list_->entries[entry], level = shown >> gpu::PAGE_LEVEL_SHIFT;
+        if (level < uint32_t(key.level)) return;  // a finer one
+        if (level < gpu::PAGE_MISSING) return set_entry(entry, now);
+        ++leaves_looked_up_;
+        set_entry(entry, entry_of(tree().leaves[leaf].key));
+    });
+}
+
 /// Brings the list's entries up to date.
 void PagedVolume::fill_directory()
 {
@@ -47,10 +61,7 @@ void PagedVolume::fill_directory()
             if (const std::optional<uint32_t> leaf = leaf_of(change.key)) {
                 fill_leaf(*leaf);
             } else if (change.kind == BrickEvent::Kind::placed || change.kind == BrickEvent::Kind::gone) {
-                for_each_entry_below(tree(), change.key, [&](uint32_t entry, uint32_t leaf_below) {
-                    ++leaves_looked_up_;
-                    set_entry(entry, entry_of(tree().leaves[leaf_below].key));
-                });
+                fill_below(change.key);
             }
         }
     }

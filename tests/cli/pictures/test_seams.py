@@ -1,6 +1,7 @@
 """Pictures while they refine: where bricks of one level stand next to those of the next, the step between neighbouring
-pixels is at most twice that inside bricks; where two levels or more lie between them, not much more. Fine chunks of
-every second column are torn, so coarser levels are drawn in their place, as they are until fine ones have been read."""
+pixels is at most twice that inside bricks. Fine chunks of every second column are torn, so coarser levels are drawn in
+their place, as they are until fine ones have been read. Two levels or more lie between neighbours only where chunks
+cannot be read (gpu/paging_levels); there the step is not much more than twice."""
 import json
 import lzma
 import shutil

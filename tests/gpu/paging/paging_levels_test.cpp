@@ -1,6 +1,9 @@
 // Pictures where levels of detail meet.
 
+#include <atomic>
+#include <cmath>
 #include <set>
+#include <unordered_set>
 
 #include <doctest/doctest.h>
 
@@ -72,4 +75,88 @@ TEST_CASE("pre-integrated steps have the same bits with and without leaps where 
             }
     }
     CHECK(coarser > 10000);  // levels differ
+}
+
+namespace {
+
+/// The level at which the device draws a brick of level 0.
+int drawn_level(const std::unordered_set<BrickKey, BrickKeyHash>& placed, BrickKey key)
+{
+    while (!placed.contains(key)) key = parent_of(key);
+    return key.level;
+}
+
+/// The largest difference between the levels of neighbours along an axis.
+int largest_step(const std::vector<DeviceVolume::Place>& places, const glm::ivec3& counts)
+{
+    std::unordered_set<BrickKey, BrickKeyHash> placed;
+    for (const DeviceVolume::Place& place : places) placed.insert(place.key);
+    int largest = 0;
+    for (int z = 0; z < counts.z; ++z)
+        for (int y = 0; y < counts.y; ++y)
+            for (int x = 0; x < counts.x; ++x)
+                for (int axis = 0; axis < 3; ++axis) {
+                    glm::ivec3 next(x, y, z);
+                    if (++next[axis] == counts[axis]) continue;
+                    largest = std::max(largest,
+                                       std::abs(drawn_level(placed, {0, {x, y, z}}) - drawn_level(placed, {0, next})));
+                }
+    return largest;
+}
+
+}  // namespace
+
+namespace {
+
+/// Holds back all reads but those of the coarsest level until it is opened.
+class Closed final : public VolumeSource {
+public:
+    explicit Closed(Source source) : VolumeSource(source->info()), source_(std::move(source)) {}
+    void open()
+    {
+        is_open_ = true;
+        is_open_.notify_all();
+    }
+    void read(const VoxelBox& box, std::span<std::byte> voxels) const override { read_level(0, box, voxels); }
+    int levels() const override { return source_->levels(); }
+    void read_level(int level, const VoxelBox& box, std::span<std::byte> voxels) const override
+    {
+        if (level + 2 < levels()) is_open_.wait(false);
+        source_->read_level(level, box, voxels);
+    }
+
+private:
+    Source source_;
+    std::atomic<bool> is_open_ = false;
+};
+
+}  // namespace
+
+TEST_CASE("neighbours are at most a level apart while a picture refines")
+{
+    // 1024 bricks of level 0, 128 of level 1, and 16 and 2 of the coarser levels, which are always on the device.
+    const auto source = std::make_shared<Closed>(std::make_shared<Plain>(Size3(512, 256, 256), 4));
+    Session session = session_of(0.001, false);
+    session.render.paging = Paging::always;
+    Renderer renderer({.device = {.validation = true}, .threads = 1});
+    renderer.load(source, BYTES, session.render);
+    const std::shared_ptr<void> ends_open(nullptr, [&](void*) { source->open(); });
+    const DeviceVolume& volume = renderer.volume();
+    View view(renderer);
+    view.look(session, camera_looking("front", source->info()), session.render.size);
+    for (int i = 0; volume.counts()->reached < 1024; ++i) {
+        nap(i);
+        REQUIRE(i < 10'000'000);
+        view.advance();
+    }
+    source->open();
+    int largest = 0;
+    for (int i = 0; !view.complete(); ++i) {
+        nap(i);
+        REQUIRE(i < 10'000'000);
+        view.advance();
+        largest = std::max(largest, largest_step(volume.places(), {16, 8, 8}));
+    }
+    CHECK(largest == 1);
+    CHECK(volume.counts()->uploads == 1024 + 128 + 16 + 2);
 }
