@@ -9,8 +9,8 @@
 // Only bricks that rays visit are requested: bricks outside the view, empty, cut away or hidden behind something opaque
 // are not loaded. A missing brick is drawn from the finest coarser one available; the coarsest levels are always on the
 // device. A picture on a screen refines one level at a time, so that neighbours are at most a level apart; where the
-// caller waits for a complete picture, or slots are scarce, only the bricks of that picture are loaded. While the view rests, needed bricks are never evicted, so nothing is loaded twice and the picture only
-// improves.
+// caller waits for a complete picture, or slots are scarce, only the bricks of that picture are loaded. While the view
+// rests, needed bricks are never evicted, so nothing is loaded twice and the picture only improves.
 //
 // The cost of a brick that arrives or is evicted does not depend on how many bricks the view has: its directory entries
 // are patched, on the host and on the device.

@@ -238,8 +238,8 @@ bool PagedVolume::list_wants(std::vector<BrickKey>& keys)
     return true;
 }
 
-/// Adds coarser bricks through which the picture refines, before the bricks of `keys` from `first` on: neighbours in the
-/// picture are then at most a level apart. Adds only levels for which there is room besides `keys`, coarsest first.
+/// Adds coarser bricks through which the picture refines, before the bricks of `keys` from `first` on: neighbours in
+/// the picture are then at most a level apart. Adds only levels for which there is room besides `keys`, coarsest first.
 void PagedVolume::add_steps(std::vector<BrickKey>& keys, size_t first) const
 {
     auto steps = std::vector<std::vector<BrickKey>>(size_t(levels_));

@@ -80,6 +80,7 @@ private:
 /// The frames of a movie, in a file or in a folder.
 class MovieShot final : public Shot {
 public:
+    /// Called for each frame, in order.
     using FigureOf = std::function<Figure(const Camera& camera)>;
     using TextsOf = std::function<PictureTexts(const Camera& camera, const std::filesystem::path& frame)>;
     /// `texts`: stored in the frames of a folder.

@@ -167,7 +167,7 @@ std::filesystem::path Photographer::project_of_pictures() const
 }
 
 Figure Photographer::drawn_elements(const FigureElements& elements, const Session& session, const Camera& camera,
-                                    std::vector<std::string>& left_out) const
+                                    std::vector<std::string>& left_out, FigureMemory* memory) const
 {
     if (elements.is_empty() || !options_.draw_texts) return {};
     const VolumeInfo& volume = document_->volume();
@@ -175,7 +175,7 @@ Figure Photographer::drawn_elements(const FigureElements& elements, const Sessio
         panes_of(session.view, camera, session.render.size, volume, document_->probe_voxel());
     const shvr::Document& annotation = document_->annotator.document();
     const std::vector<uint8_t> groups = drawn_groups(session, annotation.mask.voxels_by_group(), annotation.trace);
-    return figure_of(elements, {session, volume, panes, groups}, options_.draw_texts, left_out);
+    return figure_of(elements, {session, volume, panes, groups, memory}, options_.draw_texts, left_out);
 }
 
 void Photographer::act(const FigureTask& task)
@@ -214,9 +214,10 @@ void Photographer::act(const MovieTask& task)
     std::vector<std::string> left_out;
     static_cast<void>(drawn_elements(elements, session, movie.frame(0).camera, left_out));
     for (const std::string& each : left_out) said += "; " + each;
-    const auto figure = [this, elements, session](const Camera& camera) {
+    const auto memory = std::make_shared<FigureMemory>();
+    const auto figure = [this, elements, session, memory](const Camera& camera) {
         std::vector<std::string> ignored;
-        return drawn_elements(elements, session, camera, ignored);
+        return drawn_elements(elements, session, camera, ignored, memory.get());
     };
     const auto texts = [this, session](const Camera& camera, const std::filesystem::path& frame) {
         return shvr::texts_of_picture(session, camera, frame, project_of_pictures(), PictureProbe::none);

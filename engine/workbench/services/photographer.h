@@ -44,7 +44,7 @@ private:
     glm::uvec2 pixels_of(const glm::ivec2& asked) const;
     Session session_of_pictures(const glm::uvec2& pixels) const;
     Figure drawn_elements(const FigureElements& elements, const Session& session, const Camera& camera,
-                          std::vector<std::string>& left_out) const;
+                          std::vector<std::string>& left_out, FigureMemory* memory = nullptr) const;
     std::filesystem::path project_of_pictures() const;
     Figure figure_of_picture(uint32_t scale) const;
     Screenshots::Texts texts_of_picture(const glm::uvec2& pixels, bool shows_probe) const;

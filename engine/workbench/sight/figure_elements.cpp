@@ -53,8 +53,9 @@ public:
           size_(drawn_.size())
     {}
 
-    Figure::Part all(bool is_first)
+    Figure::Part all(size_t index)
     {
+        const bool is_first = index == 0;
         if (elements_.scale_bar && pane_.kind != Pane::Kind::map) scale_bar();
         if (is_first) {
             if (!elements_.title.empty()) title();
@@ -63,7 +64,8 @@ public:
             if (elements_.legend) legend();
         }
         if (elements_.measurements && pane_.kind != Pane::Kind::map && !pane_.shot.right_eye)
-            draw_measurements(drawn_, pane_, scene_.session.measurements, scene_.volume, is_first, left_out_);
+            draw_measurements(drawn_, pane_, scene_.session.measurements, scene_.volume,
+                              scene_.memory ? &scene_.memory->at(index) : nullptr, is_first, left_out_);
         if (is_first) {
             for (const FigureText& text : elements_.texts) text_at_point(text);
         }
@@ -321,9 +323,9 @@ Figure figure_of(const FigureElements& elements, const FigureScene& scene, const
     const double text_pixels = elements.text_pixels > 0.0 || scene.panes.empty()
                                    ? elements.text_pixels
                                    : automatic_text_pixels(scene.panes.front().pixels());
-    for (const Pane& pane : scene.panes)
-        figure.parts.push_back(
-            PaneFigure(elements, scene, pane, text_pixels, draw_texts, left_out).all(&pane == scene.panes.data()));
+    if (scene.memory) scene.memory->resize(scene.panes.size());
+    for (size_t i = 0; i < scene.panes.size(); ++i)
+        figure.parts.push_back(PaneFigure(elements, scene, scene.panes[i], text_pixels, draw_texts, left_out).all(i));
     return figure;
 }
 

@@ -27,7 +27,7 @@ std::string fitted(const MeasureLabel& label, double width, const FigurePane& dr
 
 /// Writes labels of lines where they cover as little as possible. Returns the number of those that cover something.
 size_t write_labels(FigurePane& drawn, const std::vector<std::string>& texts, std::vector<LabelPlace> places,
-                    std::span<const LabelLine> lines)
+                    std::span<const LabelLine> lines, std::span<const size_t> keys, LabelMemory* memory)
 {
     const double line = drawn.line();
     const glm::dvec2 margin = LABEL_MARGIN * (line / FONT_UNITS);
@@ -39,7 +39,7 @@ size_t write_labels(FigurePane& drawn, const std::vector<std::string>& texts, st
         places.push_back({.at = box.begin});
         sizes.push_back(box.end - box.begin);
     }
-    spread(places, sizes, drawn.size(), lines);
+    spread_as_before(places, sizes, drawn.size(), lines, keys, memory);
     size_t covering = 0;
     std::vector<FigurePane::Words> words;
     std::vector<LabelLine> leaders;
@@ -59,7 +59,7 @@ size_t write_labels(FigurePane& drawn, const std::vector<std::string>& texts, st
 }  // namespace
 
 void draw_measurements(FigurePane& drawn, const Pane& pane, std::span<const Measurement> all, const VolumeInfo& volume,
-                       bool is_first, std::vector<std::string>& left_out)
+                       LabelMemory* memory, bool is_first, std::vector<std::string>& left_out)
 {
     if (all.empty()) {
         if (is_first) left_out.emplace_back("the measurements are left out: the session has none");
@@ -69,6 +69,7 @@ void draw_measurements(FigurePane& drawn, const Pane& pane, std::span<const Meas
     std::vector<LabelLine> sides, arcs;
     std::vector<LabelPlace> places;
     std::vector<std::string> texts;
+    std::vector<size_t> keys;
     bool is_shortened = false;
     for (size_t i = 0; i < all.size(); ++i) {
         const MeasureLines shown = lines_of(all[i], pane, volume, line / FONT_UNITS);
@@ -76,6 +77,7 @@ void draw_measurements(FigurePane& drawn, const Pane& pane, std::span<const Meas
         arcs.insert(arcs.end(), shown.arc.begin(), shown.arc.end());
         if (!shown.label) continue;
         places.push_back(*shown.label);
+        keys.push_back(i + 1);
         MeasureLabel label = label_of(all[i], i + 1, volume);
         if (shown.is_part) label.value += SEEN_IN_PART;
         texts.push_back(fitted(label, drawn.size().x - drawn.edge(), drawn, is_shortened));
@@ -92,7 +94,7 @@ void draw_measurements(FigurePane& drawn, const Pane& pane, std::span<const Meas
             drawn.dot(end, DOT_RADIUS * line);
             avoided.push_back(avoided_around(end, AVOIDED_AROUND_DOTS * line));
         }
-    if (const size_t covering = write_labels(drawn, texts, std::move(places), avoided); covering > 0)
+    if (const size_t covering = write_labels(drawn, texts, std::move(places), avoided, keys, memory); covering > 0)
         left_out.push_back(sentence(counted(int64_t(covering), "label"),
                                     " of measurements cannot be read: the picture is too small for all of them"));
 }

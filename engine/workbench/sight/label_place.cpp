@@ -176,4 +176,18 @@ void spread(std::span<LabelPlace> labels, std::span<const glm::dvec2> sizes, con
     }
 }
 
+void spread_as_before(std::span<LabelPlace> labels, std::span<const glm::dvec2> sizes, const glm::dvec2& pane,
+                      std::span<const LabelLine> lines, std::span<const size_t> keys, LabelMemory* memory)
+{
+    if (!memory) return spread(labels, sizes, pane, lines);
+    std::vector<std::optional<glm::dvec2>> last(labels.size());
+    for (size_t i = 0; i < keys.size(); ++i)
+        if (const auto at = memory->find(keys[i]); at != memory->end()) last[i] = at->second;
+    const std::vector<LabelPlace> before(labels.begin(), labels.end());
+    spread(labels, sizes, pane, lines, last);
+    memory->clear();
+    for (size_t i = 0; i < keys.size(); ++i)
+        if (keys[i] != 0) memory->emplace(keys[i], offset_of(before[i], labels[i], sizes[i]));
+}
+
 }  // namespace shvr::ui

@@ -3,6 +3,8 @@
 // thread.
 
 #include <cmath>
+#include <cstddef>
+#include <map>
 #include <optional>
 #include <span>
 #include <utility>
@@ -41,6 +43,12 @@ inline LabelLine avoided_around(const glm::dvec2& point, double reach)
 /// of text. Null: it had none.
 void spread(std::span<LabelPlace> labels, std::span<const glm::dvec2> sizes, const glm::dvec2& pane,
             std::span<const LabelLine> lines = {}, std::span<const std::optional<glm::dvec2>> last = {});
+/// By a label's key, the offset of its text from its point in the last frame, in pixels.
+using LabelMemory = std::map<size_t, glm::dvec2>;
+/// Like spread(), and labels stay where they were in the last frame while the view turns. `keys`: of the first labels,
+/// by which `memory` knows them; 0: not known. `memory`: of the last frame, renewed; null: none.
+void spread_as_before(std::span<LabelPlace> labels, std::span<const glm::dvec2> sizes, const glm::dvec2& pane,
+                      std::span<const LabelLine> lines, std::span<const size_t> keys, LabelMemory* memory);
 /// Returns the offset of a text's upper left corner from its label's point. `before`: before the label was moved.
 glm::dvec2 offset_of(const LabelPlace& before, const LabelPlace& after, const glm::dvec2& size);
 /// Returns a line from a label's point to the label if that lies so far away that it may be taken for another one's;

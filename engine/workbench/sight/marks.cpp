@@ -456,24 +456,16 @@ void spread_labels(Marks& marks, std::span<const glm::dvec2> text_sizes, const g
 {
     std::vector<LabelPlace> places;
     std::vector<glm::dvec2> sizes;
+    std::vector<size_t> keys;
     for (size_t i = 0; i < marks.labels.size(); ++i) {
         const Label& label = marks.labels[i];
         sizes.push_back(text_sizes[i] + 2.0 * margin);
         // With the margin, the anchor's point moves outwards.
         places.push_back({label.at + (2.0 * label.anchor - 1.0) * margin, label.anchor, label.away});
-    }
-    std::vector<std::optional<glm::dvec2>> last(places.size());
-    if (memory) {
-        for (size_t i = 0; i < places.size(); ++i)
-            if (const auto at = memory->find(marks.labels[i].key); at != memory->end()) last[i] = at->second;
-        memory->clear();
+        keys.push_back(label.key);
     }
     const std::vector<LabelPlace> before = places;
-    spread(places, sizes, pane, marks.lines, last);
-    if (memory)
-        for (size_t i = 0; i < places.size(); ++i)
-            if (marks.labels[i].key != 0)
-                memory->emplace(marks.labels[i].key, offset_of(before[i], places[i], sizes[i]));
+    spread_as_before(places, sizes, pane, marks.lines, keys, memory);
     for (size_t i = 0; i < marks.labels.size(); ++i) {
         Label& label = marks.labels[i];
         if (label.away == glm::dvec2(0.0)) continue;

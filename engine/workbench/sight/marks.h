@@ -4,7 +4,6 @@
 // are also drawn into picture files, except for those that only guide the hand (figure.h). Pure; main thread only,
 // while the model exists.
 
-#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,8 +31,6 @@ struct Label {
 /// width in pixels, for a font of this height.
 glm::dvec3 rim_color(const glm::dvec3& ink);
 double rim_width(double font_pixels);
-/// By a label's key, the offset of its text from its point, in pixels.
-using LabelMemory = std::map<size_t, glm::dvec2>;
 struct Marks {
     std::vector<Stroke> strokes;
     std::vector<Label> labels;

@@ -97,7 +97,7 @@ void check_figure(FigureOptions& options)
 }
 
 PictureFile::Over figure_over(const FigureOptions& options, const Opened& opened, const Session& session,
-                              const Camera& camera, std::vector<std::string>& left_out)
+                              const Camera& camera, std::vector<std::string>& left_out, ui::FigureMemory* memory)
 {
     if (options.elements.is_empty()) return {};
     const VolumeInfo& volume = opened.source->info();
@@ -107,7 +107,7 @@ PictureFile::Over figure_over(const FigureOptions& options, const Opened& opened
     const std::vector<uint8_t> groups = ui::drawn_groups(session, document.mask.voxels_by_group(), document.trace);
     std::vector<std::string> sentences;
     auto figure = std::make_shared<ui::Figure>(
-        ui::figure_of(options.elements, {session, volume, panes, groups}, ui::draw_picture_texts, sentences));
+        ui::figure_of(options.elements, {session, volume, panes, groups, memory}, ui::draw_picture_texts, sentences));
     for (const std::string& each : sentences)
         if (std::ranges::find(left_out, each) == left_out.end()) left_out.push_back(each);
     return [figure](ImageF& rows, uint32_t first_row) { ui::draw(*figure, rows, first_row); };

@@ -27,8 +27,9 @@ void add_resolution(PictureTexts& texts, const FigureOptions& options);
 void check_figure(FigureOptions& options);
 
 /// Returns what draws the elements over rows of the picture of `session` from `camera`; empty if there are none. Adds
-/// to `left_out` what it cannot draw, each sentence once.
+/// to `left_out` what it cannot draw, each sentence once. `memory`: as in ui::FigureScene.
 PictureFile::Over figure_over(const FigureOptions& options, const Opened& opened, const Session& session,
-                              const Camera& camera, std::vector<std::string>& left_out);
+                              const Camera& camera, std::vector<std::string>& left_out,
+                              ui::FigureMemory* memory = nullptr);
 
 }  // namespace shvr::cli

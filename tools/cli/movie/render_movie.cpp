@@ -101,6 +101,7 @@ private:
     LongWork& work_;
     int finished_ = 0;  ///< frames
     std::optional<Groups> shown_groups_;
+    ui::FigureMemory memory_;
     bool is_complete_ = true;
     std::vector<std::string> warnings_;
 };
@@ -153,7 +154,7 @@ void Drawing::draw_files()
                                  : PictureTexts();
         add_resolution(texts, request_.figure);
         PictureFile file(path, *opened_.renderer, frame.session, frame.camera, options_of(frame, index), texts,
-                         figure_over(request_.figure, opened_, frame.session, frame.camera, warnings_));
+                         figure_over(request_.figure, opened_, frame.session, frame.camera, warnings_, &memory_));
         draw_parts(file, &PictureFile::is_drawn, index);
         file.commit();
         finished_ = index + 1;
@@ -165,7 +166,8 @@ void Drawing::draw_movie()
     MovieEncoder encoder(plan_.path, opened_.session.render.size, plan_.frames_per_second);
     for (int index = 0; index < movie_.frames(); ++index) {
         const Movie::Frame frame = movie_.frame(index);
-        const PictureFile::Over over = figure_over(request_.figure, opened_, frame.session, frame.camera, warnings_);
+        const PictureFile::Over over =
+            figure_over(request_.figure, opened_, frame.session, frame.camera, warnings_, &memory_);
         uint32_t first_row = 0;
         PictureJob job(*opened_.renderer, frame.session, frame.camera, options_of(frame, index), [&](ImageF rows) {
             if (over) over(rows, first_row);
