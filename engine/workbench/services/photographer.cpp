@@ -61,7 +61,12 @@ Photographer::Photographer(Desk& desk, Others others) : Service(desk), others_(s
 void Photographer::advance()
 {
     attempt(photographing_, [this] {
-        follow_screenshots();
+        try {
+            follow_screenshots();
+        } catch (...) {
+            others_.stay_open();
+            throw;
+        }
         follow_project_picture();
     });
 }

@@ -50,7 +50,7 @@ public:
     Leave leave(std::string& why);
     /// The same for the window: while closing it waits until a file is written, the model says so.
     Leave close(std::string& why);
-    /// Takes back the wish to close the window, if that waits: what it waits for has ended otherwise.
+    /// Takes back the wish to close the window, if that waits: what it waits for has failed, or ended otherwise.
     void stay_open();
     /// Notes that the window was to be closed, and stays open since work cannot be saved; the model says so until a
     /// save succeeds.

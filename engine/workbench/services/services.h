@@ -142,7 +142,8 @@ struct Services {
                           },
                       .add_reading = [this](std::vector<Jobs::State>& states) { opener.add_read(states); },
                       .open = [this](const std::filesystem::path& path) { taker.act(Open{path}); },
-                      .record_settings = [this] { settings.record_settings(); }}};
+                      .record_settings = [this] { settings.record_settings(); },
+                      .stay_open = [this] { saver.stay_open(); }}};
     Saver saver{desk,
                 keeper,
                 {.begin_open = [this](const std::filesystem::path& path) { opener.begin_open(path, {}); },

@@ -61,16 +61,19 @@ void TaskRunner::advance()
     for (const Jobs::Finished& job : jobs_.finish()) {
         const auto writer = writers_.find(job.number);
         const std::string kept = writer == writers_.end() || writer->second->empty() ? "" : "; " + *writer->second;
-        if (writer != writers_.end()) writers_.erase(writer);
+        const bool is_writer = writer != writers_.end();
+        if (is_writer) writers_.erase(writer);
         if (const auto import = imports_.find(job.number); import != imports_.end()) {
             if (job.was_cancelled || !job.failure.empty()) look_at_part(import->second);
             imports_.erase(import);
         }
         if (others_.end_reading(job)) continue;
-        if (job.was_cancelled)
+        if (job.was_cancelled) {
             say("Cancelled: " + job.what + kept, kept.empty() ? Weight::done : Weight::warning);
-        else if (!job.failure.empty())
+        } else if (!job.failure.empty()) {
+            if (is_writer) others_.stay_open();
             say(job.failure, Weight::error);
+        }
     }
 }
 

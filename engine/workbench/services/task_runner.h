@@ -22,6 +22,7 @@ public:
         Call<void(std::vector<Jobs::State>&)> add_reading;
         Call<void(const std::filesystem::path&)> open;
         Call<void()> record_settings;
+        Call<void()> stay_open;  ///< takes back the wish to close the window, if that waits for a file
     };
     TaskRunner(Desk& desk, const PreferenceKeeper& keeper, Others others);
     void act(const ExportTask& task);

@@ -1,5 +1,7 @@
 // The photographer alone: names of pictures, and a large one that ends or is cancelled.
 
+#include <fstream>
+
 #include <doctest/doctest.h>
 
 #include "engine/base/image_file.h"
@@ -85,4 +87,16 @@ TEST_CASE_FIXTURE(PhotographerAlone, "photographer: a movie turns, and a cancell
     CHECK(photographer.cancel(PICTURE_JOB));
     CHECK(says("frame-0001.png is finished"));
     CHECK_THROWS_AS(photographer.act(MovieTask{.path = folder.path / "m", .views = "nowhere\nfront"}), Error);
+}
+
+TEST_CASE_FIXTURE(PhotographerAlone, "photographer: a movie that fails keeps a window open that waits for it")
+{
+    const MovieTask task{.path = folder.path / "frames", .turntable_degrees = 180.0, .frames = 3, .pixels = {24, 20}};
+    photographer.act(task);
+    std::filesystem::remove_all(task.path);
+    std::ofstream(task.path) << "a file";
+    static_cast<void>(take_calls());
+    until([&] { photographer.advance(); }, [&] { return !photographer.has_large(); });
+    CHECK(take_calls() == "stay_open");
+    CHECK(desk.messages.all().back().weight == Weight::error);
 }

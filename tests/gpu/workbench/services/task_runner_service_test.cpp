@@ -22,7 +22,8 @@ struct TasksAlone : DeskWithScan {
                       .add_loading = [](std::vector<Jobs::State>& states) { states.push_back({.what = "loading"}); },
                       .add_reading = [](std::vector<Jobs::State>& states) { states.push_back({.what = "reading"}); },
                       .open = [this](const std::filesystem::path& path) { opened = path; },
-                      .record_settings = notes("record_settings")}};
+                      .record_settings = notes("record_settings"),
+                      .stay_open = notes("stay_open")}};
     void await_end()
     {
         until([&] { tasks.advance(); }, [&] { return desk.jobs.is_idle() && desk.savers.is_idle(); });
@@ -82,4 +83,15 @@ TEST_CASE_FIXTURE(TasksAlone, "tasks: an export has the settings so far, and is 
     CHECK_FALSE(tasks.is_writing());
     CHECK(std::filesystem::exists(folder.path / "out.mask"));
     CHECK(says("Exported"));
+}
+
+TEST_CASE_FIXTURE(TasksAlone, "tasks: an export that fails keeps a window open that waits for it")
+{
+    document().annotator.paint(document().dab());
+    std::filesystem::create_directory(folder.path / "out.mask");
+    tasks.act(ExportTask{.mask = folder.path / "out.mask"});
+    static_cast<void>(take_calls());
+    await_end();
+    CHECK(take_calls() == "stay_open");
+    CHECK(desk.messages.all().back().weight == Weight::error);
 }
