@@ -9,9 +9,9 @@
 
 namespace shvr {
 
-/// Most voxels of a scan that gets ambient occlusion by itself on a device that is the processor: 256^3 take about
-/// 0.4 s there (shaders/MEASURED.md), before the sharp picture.
-inline constexpr int64_t MAX_OCCLUDED_BY_CPU = int64_t{1} << 24;
+/// Most voxels of a scan that gets ambient occlusion by itself on a device that is the processor: 512^3 take about 4 s
+/// there (shaders/MEASURED.md), in which the picture is shown without, before the sharp one.
+inline constexpr int64_t MAX_OCCLUDED_BY_CPU = int64_t{1} << 27;
 
 /// Gives the light of the examples and, to at most `most_occluded` voxels, ambient occlusion. Leaves the light as it is
 /// if any of the settings, "KEY=VALUE", states a part of it.
