@@ -9,6 +9,10 @@ namespace {
 
 /// Least angle, as a sine, between a handle's axis and the line of sight.
 constexpr double MIN_SINE = 0.1;
+/// Voxels that remain visible when one face is dragged towards the other one.
+constexpr double MIN_THICKNESS = 1.0;
+/// Handles of two faces at least so many pixels apart can be told apart.
+constexpr double MIN_APART = 0.5 * HANDLE_PIXELS;
 
 struct Corners {
     glm::dvec3 lower, upper;
@@ -65,7 +69,12 @@ std::vector<CutHandle> cut_handles(const Pane& pane, const CutBox& cut, const Vo
             const auto seen = project(pane.shot.camera, pane.pixels(), handle.middle);
             if (!seen || !place_along(pane, handle.middle, unit_vector(axis), seen->pixel)) continue;
             handle.at = seen->pixel;
-            handles.push_back(handle);
+            const bool coincide = upper && !handles.empty() && handles.back().axis == axis &&
+                                  glm::distance(handles.back().at, handle.at) < MIN_APART;
+            if (!coincide)
+                handles.push_back(handle);
+            else if (double(volume.size[axis]) - box.upper[axis] > box.lower[axis])
+                handles.back() = handle;
         }
     return handles;
 }
@@ -78,12 +87,12 @@ CutBox dragged(const CutBox& cut, const CutHandle& handle, const Pane& pane, con
     const auto begin = place_along(pane, handle.middle, along, from), end = place_along(pane, handle.middle, along, to);
     if (!begin || !end) return cut;
     const Corners box = corners_of(cut, volume);
-    const double voxel = handle.voxel + (*end - *begin) / volume.spacing[axis];
+    const double voxel = handle.voxel + (*end - *begin) / volume.spacing[axis], size(double(volume.size[axis]));
     CutBox moved = cut;
     if (handle.upper)
-        moved.upper[axis] = std::clamp(voxel, box.lower[axis], double(volume.size[axis]));
+        moved.upper[axis] = std::clamp(voxel, std::min(box.lower[axis] + MIN_THICKNESS, size), size);
     else
-        moved.lower[axis] = std::clamp(voxel, 0.0, box.upper[axis]);
+        moved.lower[axis] = std::clamp(voxel, 0.0, std::max(box.upper[axis] - MIN_THICKNESS, 0.0));
     return moved;
 }
 

@@ -21,10 +21,10 @@ struct CutHandle {
 };
 
 /// Returns the handles that can be dragged in a pane: none in maps and anaglyphs, and none of a face whose axis the
-/// pane sees end on.
+/// pane sees end on. Of two faces at nearly the same pixel only the one that has more room outwards.
 std::vector<CutHandle> cut_handles(const Pane& pane, const CutBox& cut, const VolumeInfo& volume);
 /// Returns the box after a drag of a handle from one pixel to another. `cut` is the box before the drag. The face
-/// follows the pointer as far as the volume's end and the other face.
+/// follows the pointer as far as the volume's end, and to one voxel before the other face.
 CutBox dragged(const CutBox& cut, const CutHandle& handle, const Pane& pane, const VolumeInfo& volume,
                const glm::dvec2& from, const glm::dvec2& to);
 /// Returns the edges of the box in a slice, as the corners of a rectangle in pixels of the pane.

@@ -52,10 +52,28 @@ TEST_CASE("a face that is seen end on has no handle, nor have maps, and no face 
         return dragged(cut, *far_x, pane, volume(), far_x->at, far_x->at + glm::dvec2(x, 0.0)).upper.x;
     };
     CHECK(end_at(1000.0) == 100.0);
-    CHECK(end_at(-1000.0) == 10.0);
+    CHECK(end_at(-1000.0) == 11.0);
     CHECK(!handle_at(handles, far_x->at + glm::dvec2(0.0, HANDLE_PIXELS + 0.1)));
     pane.kind = Pane::Kind::map;
     CHECK(cut_handles(pane, cut, volume()).empty());
+}
+
+TEST_CASE("a box without thickness can be opened again by the handle that has room")
+{
+    const Pane pane = pane_of(slanted(Camera::Projection::orthographic));
+    for (const double at : {0.0, 1.0, 99.0, 100.0}) {
+        CAPTURE(at);
+        const CutBox cut{{at, 20.0, 5.0}, {at, 70.0, 50.0}};
+        const std::vector<CutHandle> handles = cut_handles(pane, cut, volume());
+        REQUIRE(handles.size() == 5);
+        CHECK(handles[0].upper == (at < 50.0));
+        const double wanted = at < 50.0 ? 40.0 : 60.0;
+        const glm::dvec3 middle = handles[0].middle / volume().spacing;
+        const glm::dvec2 to =
+            project(pane.shot.camera, pane.pixels(), glm::dvec3(wanted, middle.y, middle.z) * volume().spacing)->pixel;
+        const CutBox moved = dragged(cut, handles[0], pane, volume(), handles[0].at, to);
+        CHECK((at < 50.0 ? moved.upper : moved.lower).x == doctest::Approx(wanted));
+    }
 }
 
 TEST_CASE("a slice shows the box as a rectangle")
