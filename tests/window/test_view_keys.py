@@ -31,6 +31,8 @@ FIRST = {
 MAKES = {"step_back": "set probe.tool", "single_view": "set view.arrangement", "tool_turn": "set probe.tool",
          "group_1": "set probe.group", "less_blending": "set blend.size",
          "stronger": "set probe.touch.strength", "threshold_here": "set probe.paint_threshold"}
+# Shortcuts that need a path that is begun.
+OF_A_PATH = {"end_measure", "take_back_point"}
 # Shortcuts that only ever answer with a sentence.
 REFUSED = {"regroup_0": "roup 0 is the eraser"}
 # Shortcuts that open a window which takes keys or hides what follows: pressed again, or closed by Escape.
@@ -56,7 +58,7 @@ class KeySet(Seen):
         session = self.write_ball(volume={"procedural": "sphere", "size": [32, 32, 32]},
                                   light={"occlusion": {"strength": 0.3, "automatic": False}},
                                   interaction={"screenshot_scale": 1},
-                                  probe={"radius_voxels": 3, "group": 3, "paint_threshold": 120})
+                                  probe={"radius_voxels": 3, "group": 3, "paint_threshold": 120, "measure": "path"})
         self.open_scan(session, preferences={"key_set": key_set, "hints_seen": 3})
         x, y = self.middle()
         self.do("mousemove", x - 5, y, "mousemove", x, y, pause_s=0)
@@ -108,7 +110,11 @@ class KeySet(Seen):
             for _ in range(9):
                 self.run_shortcut("keep_view", column)
         if name == "copy_measurements":
-            self.measure()
+            self.begin_path()
+            self.check_key("Enter", "end_measure")
+            self.press("Alt+1")
+        if name in OF_A_PATH:
+            self.begin_path()
         if name == "mend_cut":
             self.cut_a_line(column)
         for first in FIRST.get(name, []):
@@ -117,6 +123,8 @@ class KeySet(Seen):
             self.press(chord)
             return None
         found = self.what_follows(lambda: self.press(chord), self.makes(row))
+        if name in OF_A_PATH:
+            self.press("Alt+1")
         if name in TWICE:
             self.check_key(chord, self.makes(row))
         if name in ESCAPED:
@@ -129,12 +137,12 @@ class KeySet(Seen):
                 self.see_no_more("", shown)
         return None if self.makes(row) in found else found
 
-    def measure(self):
+    def begin_path(self):
+        """Two points of a path, with the tool for measuring."""
         x, y = self.middle()
         self.press("Alt+6")
         for at in (x - 20, x + 20):
             self.what_follows(lambda: self.do("mousemove", at, y, "sleep", 0.1, "click", 1, pause_s=0), "measure_at")
-        self.press("Alt+1")
         self.do("mousemove", x, y, pause_s=0)
 
     def cut_a_line(self, column):

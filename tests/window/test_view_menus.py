@@ -26,7 +26,7 @@ IN_PAINT = {"set probe.group", "set probe.brush"}
 NO_ENTRIES = {"Looks": ["None is saved yet", "Remove"], "view 1": ["view 1", "Rename"],
               "Cutting planes": ["Visible range", "from ", "to ", "x", "y", "z"]}
 # They need a pointer over the picture, or stay grey for what they say when pointed at.
-WITH_THE_POINTER = {"pivot_at_pointer", "end_measure"}
+WITH_THE_POINTER = {"pivot_at_pointer", "end_measure", "take_back_point"}
 AT_LAST = {"quit", "quit_unsaved", "open_example"}
 # Their entries are buttons, which leave the menu open.
 STAYS_OPEN = {"Turn the view", "Move the view", "Distance blending", "Clip planes"}

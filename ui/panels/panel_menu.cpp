@@ -333,6 +333,7 @@ void tools_menu(const Model& model, Actions& actions)
     shortcut_item("tool_measure", model, actions, model.tool() == Tool::measure);
     shortcut_item("next_measure", model, actions);
     shortcut_item("end_measure", model, actions);
+    shortcut_item("take_back_point", model, actions);
     shortcut_item("copy_measurements", model, actions);
     shortcut_item("clear_measurements", model, actions);
     ImGui::Separator();

@@ -98,7 +98,8 @@ std::string measurements_table(std::span<const Measurement> measurements, const 
         for (size_t i = 0; i < cells.size(); ++i) table += (i == 0 ? "" : std::string(1, separator)) + cell(cells[i]);
         table += line_end;
     };
-    row({"number", "name", "kind", "length_" + space.unit, "angle_degrees", "points_" + space.unit});
+    row({"number", "name", "kind", "length_" + space.unit, "angle_degrees",
+         "points_" + space.unit + (positions == Positions::physical ? "_physical" : "_from_corner")});
     for (size_t i = 0; i < measurements.size(); ++i) {
         const Measurement& each = measurements[i];
         const bool is_angle = each.kind == MeasureKind::angle;

@@ -49,7 +49,8 @@ std::string name_of(const Measurement& measurement, size_t number);
 std::string unused_name(std::span<const Measurement> others, MeasureKind kind);
 
 /// Returns a table, one measurement per row, whose headings have the units: number, name, kind, length, angle and the
-/// points. `separator`: a comma (RFC 4180) or a tab. Lengths of angles and angles of lengths are empty.
+/// points, of which the heading says whether they are physical, with the centre of voxel 0 at the scan's origin, or
+/// counted from its corner. `separator`: a comma (RFC 4180) or a tab. Angles have no length, and lengths no angle.
 std::string measurements_table(std::span<const Measurement> measurements, const TraceSpace& space, Positions positions,
                                char separator);
 

@@ -16,6 +16,8 @@ struct MeasureAt {  ///< sets a point of a measurement at the visible point; the
 
 struct EndMeasure {};  ///< completes a path with the points that it has
 
+struct TakeBackPoint {};  ///< removes the last point of a measurement that is begun
+
 struct RenameMeasurement {
     size_t number = 1;  ///< from 1
     std::string to;
@@ -50,6 +52,12 @@ inline constexpr auto MEASURING_ACTIONS = std::tuple{
                        ? "no path with two points is begun"
                        : "";
         }),
+    row<TakeBackPoint, Reader>({"take_back_point", "Take back the point", MEASURING_GROUP,
+                                "removes the last point of a measurement that is begun"},
+                               NO_FIELDS,
+                               [](const auto& model, const TakeBackPoint&) -> std::string {
+                                   return model.measuring.empty() ? "no measurement is begun" : "";
+                               }),
     row<RenameMeasurement, Reader>(
         {"rename_measurement", "Rename a measurement", MEASURING_GROUP, "gives a measurement a name"},
         [](auto& f, RenameMeasurement& a) {

@@ -309,6 +309,12 @@ Action neighbour_group(const Model& model, double)
     return edited(model.session, [&](Session& s) { s.probe.brush.group = next_group(model, DIRECTION); });
 }
 
+/// Takes back the last point of a measurement that is begun; if there is none, undoes the last step.
+Action undo_last(const Model& model, double)
+{
+    return model.measuring.empty() ? Action(UndoOp{}) : Action(TakeBackPoint{});
+}
+
 /// Closes the frontmost dialog or, if there is none, selects the tool with which the mouse turns the view.
 Action step_back(const Model& model, double amount)
 {
@@ -355,7 +361,7 @@ constexpr Shortcut both(const char* id, const char* group, const char* name, Mod
 // have other meanings, and a letter typed by mistake must not cut the volume. In the modern key set, these shortcuts
 // therefore have no keys until the user assigns some.
 constexpr Shortcut SHORTCUTS[] = {
-    {"undo", WORK_KEYS, "Undo", Mode::repeated, plain<UndoOp>, {"Ctrl+Z", "Ctrl+Z"}},
+    {"undo", WORK_KEYS, "Undo", Mode::repeated, undo_last, {"Ctrl+Z", "Ctrl+Z"}},
     {"redo", WORK_KEYS, "Redo", Mode::repeated, plain<RedoOp>, {"Ctrl+Y Ctrl+Shift+Z", "Ctrl+Shift+Z"}},
     {"open",
      WORK_KEYS,
@@ -444,7 +450,9 @@ constexpr Shortcut SHORTCUTS[] = {
          ""),
     both("auto_contrast", VIEWS_KEYS, "Automatic contrast of the slices", Mode::tap, plain<AutoContrast>, "B"),
     both("next_measure", VIEWS_KEYS, "Measure distances, paths or angles in turn", Mode::tap, next_measure, ""),
-    both("end_measure", VIEWS_KEYS, "End the measured path", Mode::tap, plain<EndMeasure>, ""),
+    both("end_measure", VIEWS_KEYS, "End the measured path", Mode::tap, plain<EndMeasure>, "Enter"),
+    both("take_back_point", VIEWS_KEYS, "Take back the last point measured", Mode::tap, plain<TakeBackPoint>,
+         "Backspace"),
     {"copy_measurements", VIEWS_KEYS, "Copy the measurements", Mode::tap, plain<CopyMeasurements>, {"Ctrl+C", ""}},
     both("clear_measurements", VIEWS_KEYS, "Remove the measurements", Mode::tap, plain<ClearMeasurements>, ""),
     {"fit_view", VIEWS_KEYS, "Fit", Mode::tap, at_pane<FitView>, {"Home", "Ctrl+Home"}},

@@ -17,7 +17,7 @@ std::string next_step(MeasureKind kind, size_t points)
     if (kind == MeasureKind::distance) return "One end of the distance; click the other";
     if (kind == MeasureKind::path)
         return points == 1 ? "The path begins here; click its next points, the last one twice"
-                           : sentence("Point ", points, " of the path; a double click ends it");
+                           : sentence("Point ", points, " of the path; a double click or Enter ends it");
     return points == 1 ? "One side of the angle; click its vertex" : "The vertex; click the other side of the angle";
 }
 
@@ -132,7 +132,10 @@ void Reader::act(const MeasureAt& action)
     if (document.session.measurements.size() == MAX_MEASUREMENTS)
         decline(sentence("There are ", MAX_MEASUREMENTS,
                          " measurements, and no more are kept; copy them and remove some first"));
-    document.measuring.push_back(*point / document.volume().spacing);
+    const glm::dvec3 voxel = *point / document.volume().spacing;
+    if (!document.measuring.empty() && document.measuring.back() == voxel)
+        decline("This is the point that was clicked last; click another one");
+    document.measuring.push_back(voxel);
     const MeasureKind kind = document.session.probe.measure;
     const size_t points = document.measuring.size();
     if (points < last_point_of(kind).value_or(MAX_MEASURED_POINTS)) return say(next_step(kind, points));
@@ -144,6 +147,16 @@ void Reader::act(const EndMeasure&)
     if (document_->session.probe.measure != MeasureKind::path || document_->measuring.size() < 2)
         decline("No path with two points is begun, so none is ended");
     complete_measurement();
+}
+
+void Reader::act(const TakeBackPoint&)
+{
+    std::vector<glm::dvec3>& points = document_->measuring;
+    const MeasureKind kind = document_->session.probe.measure;
+    if (points.empty()) decline("No measurement is begun, so no point is taken back");
+    points.pop_back();
+    if (points.empty()) return say(sentence("The ", spelled(kind), " that was begun is dropped"));
+    say("Took back a point. " + next_step(kind, points.size()));
 }
 
 void Reader::complete_measurement()
@@ -183,7 +196,7 @@ void Reader::act(const ClearMeasurements&)
     Session after = document_->session;
     const bool is_one_begun = !std::exchange(document_->measuring, {}).empty();
     if (after.measurements.empty()) {
-        if (is_one_begun) say("The begun measurement is dropped");
+        if (is_one_begun) say("The measurement that was begun is dropped");
         return;
     }
     after.measurements.clear();

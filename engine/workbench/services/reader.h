@@ -19,6 +19,7 @@ public:
     Reader(Desk& desk, PreferenceKeeper& keeper, Others others);
     void act(const MeasureAt& action);
     void act(const EndMeasure& action);
+    void act(const TakeBackPoint& action);
     void act(const RenameMeasurement& action);
     void act(const RemoveMeasurement& action);
     void act(const ClearMeasurements& action);

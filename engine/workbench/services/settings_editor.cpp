@@ -9,6 +9,7 @@
 #include "engine/workbench/desk/declined.h"
 #include "engine/workbench/edits/edit.h"
 #include "engine/workbench/edits/group_steps.h"
+#include "engine/workbench/sight/words.h"
 #include "engine/workbench/words/settings_words.h"
 
 namespace shvr::ui {
@@ -97,15 +98,34 @@ void SettingsEditor::act(const TakePreset& action)
     say("Transfer function: " + preset.name);
 }
 
+/// Keeps the path that was begun when another tool or kind of measurement is chosen.
+void SettingsEditor::keep_begun_path(Session& after)
+{
+    Document& document = *document_;
+    const ProbeSettings &was = document.session.probe, &is = after.probe;
+    if (was.tool == is.tool && was.measure == is.measure) return;
+    std::vector<glm::dvec3> points = std::exchange(document.measuring, {});
+    std::vector<Measurement>& all = after.measurements;
+    if (was.measure == MeasureKind::path && points.size() >= 2 && all.size() < MAX_MEASUREMENTS) {
+        all.push_back({std::move(points), MeasureKind::path, unused_name(all, MeasureKind::path)});
+        say(sentence(all.back().name, ": ", value_in_words(all.back(), document.volume())));
+    } else if (!points.empty()) {
+        say(sentence("The ", spelled(was.measure), " that was begun is dropped"));
+    }
+}
+
 void SettingsEditor::take_session(Session session)
 {
     Document& document = *document_;
+    std::vector<glm::dvec3> begun = document.measuring;
+    keep_begun_path(session);
     Session before = std::exchange(document.session, std::move(session));
     const Session& after = document.session;
     try {
         settings_changed(before);
     } catch (...) {
         document.session = before;
+        document.measuring = std::move(begun);
         throw;
     }
     note_edit();
@@ -142,8 +162,6 @@ void SettingsEditor::settings_changed(const Session& before)
         if (document.annotator.stroke_is_open()) document.annotator.end_stroke();
         if (document.drags_node) others_.stop_drag();
     }
-    if (before.probe.tool != after.probe.tool || before.probe.measure != after.probe.measure)
-        document.measuring.clear();
 }
 
 /// Requests that view, probe etc. are written to the journal: once they stop changing, or every few seconds until then.

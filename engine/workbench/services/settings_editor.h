@@ -54,6 +54,7 @@ public:
     HistoryModel model() const;
 
 private:
+    void keep_begun_path(Session& after);
     void settings_changed(const Session& before);
     void follow_view();
     void follow_settings();

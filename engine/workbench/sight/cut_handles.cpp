@@ -11,7 +11,7 @@ namespace {
 constexpr double MIN_SINE = 0.1;
 /// Voxels that remain visible when one face is dragged towards the other one.
 constexpr double MIN_THICKNESS = 1.0;
-/// Handles of two faces at least so many pixels apart can be told apart.
+/// Least distance in pixels at which the handles of two faces can be told apart.
 constexpr double MIN_APART = 0.5 * HANDLE_PIXELS;
 
 struct Corners {

@@ -21,7 +21,7 @@ struct CutHandle {
 };
 
 /// Returns the handles that can be dragged in a pane: none in maps and anaglyphs, and none of a face whose axis the
-/// pane sees end on. Of two faces at nearly the same pixel only the one that has more room outwards.
+/// pane sees end on. If the handles of two faces nearly coincide, returns the one that has more room outwards.
 std::vector<CutHandle> cut_handles(const Pane& pane, const CutBox& cut, const VolumeInfo& volume);
 /// Returns the box after a drag of a handle from one pixel to another. `cut` is the box before the drag. The face
 /// follows the pointer as far as the volume's end, and to one voxel before the other face.

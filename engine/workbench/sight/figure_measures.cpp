@@ -79,7 +79,7 @@ void draw_measurements(FigurePane& drawn, const Pane& pane, std::span<const Meas
         places.push_back(*shown.label);
         keys.push_back(i + 1);
         MeasureLabel label = label_of(all[i], i + 1, volume);
-        if (shown.is_part) label.value += SEEN_IN_PART;
+        label.value += shown.note;
         texts.push_back(fitted(label, drawn.size().x - drawn.edge(), drawn, is_shortened));
     }
     if (is_shortened) left_out.emplace_back("names of measurements are shortened: the picture is too small for them");

@@ -287,7 +287,7 @@ private:
         }
         for (const LabelLine& piece : lines.arc) line(piece.from, piece.to, MEASURED);
         if (!lines.label) return;
-        if (lines.is_part) text += SEEN_IN_PART;
+        text += lines.note;
         const LabelPlace& place = *lines.label;
         marks_.labels.push_back({place.at, place.anchor, std::move(text), MEASURED, place.away, number});
     }

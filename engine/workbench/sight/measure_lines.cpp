@@ -44,12 +44,20 @@ public:
     {
         if (pane_.kind != Pane::Kind::slice) return true;
         const double from = behind_plane(pane_.shot.camera, a), to = behind_plane(pane_.shot.camera, b);
-        const double voxel = spacing_[std::clamp(pane_.axis, 0, 2)];
-        return from * to <= 0.0 || std::min(std::abs(from), std::abs(to)) <= voxel;
+        return from * to <= 0.0 || std::min(std::abs(from), std::abs(to)) <= voxel();
+    }
+    /// Whether a line of a slice ends more than a voxel away from it.
+    bool leaves(const glm::dvec3& a, const glm::dvec3& b) const
+    {
+        if (pane_.kind != Pane::Kind::slice) return false;
+        const double from = behind_plane(pane_.shot.camera, a), to = behind_plane(pane_.shot.camera, b);
+        return std::max(std::abs(from), std::abs(to)) > voxel();
     }
     std::vector<LabelLine> arc_of(const Measurement& measured) const;
 
 private:
+    double voxel() const { return spacing_[std::clamp(pane_.axis, 0, 2)]; }
+
     const Pane& pane_;
     glm::uvec2 pixels_;
     glm::dvec3 spacing_;
@@ -94,11 +102,12 @@ MeasureLines lines_of(const Measurement& measured, const Pane& pane, const Volum
         const auto side = in_pane.line_of(begin, end);
         if (!side || !in_pane.shows(begin, end)) continue;
         lines.sides.push_back(*side);
+        if (in_pane.leaves(begin, end)) lines.note = " (through the slice)";
         lines.is_last_open = is_open && i + 1 == points.size();
         if (part_in_pane(side->from, side->to, pane.pixels()) && (!labelled || i == points.size() / 2)) labelled = side;
         sum += side->from + side->to;
     }
-    lines.is_part = lines.sides.size() + 1 < points.size();
+    if (lines.sides.size() + 1 < points.size()) lines.note = " (seen in part)";
     if (!labelled) return lines;
     if (measured.kind == MeasureKind::angle && points.size() == 3) lines.arc = in_pane.arc_of(measured);
     const auto seen = part_in_pane(labelled->from, labelled->to, pane.pixels());

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/look/panes.h"
@@ -15,7 +16,9 @@ namespace shvr::ui {
 struct MeasureLines {
     /// What is in front of the camera; in slices, sides that cross the plane or come within a voxel of it.
     std::vector<LabelLine> sides;
-    bool is_part = false;             ///< other sides are not in the slice, or are behind the camera
+    /// Stands behind the value: " (seen in part)" if other sides are not in the slice, or are behind the camera;
+    /// " (through the slice)" if a side leaves the slice, so that it is longer than drawn.
+    std::string_view note;
     bool is_last_open = false;        ///< the last of `sides` is not set yet
     std::vector<LabelLine> arc;       ///< between the sides of an angle, in short pieces; empty: not seen, or no angle
     std::optional<LabelPlace> label;  ///< null: no side is in the pane
@@ -24,9 +27,6 @@ struct MeasureLines {
 /// `is_open`: the last point of the measurement is not set yet. `units`: pixels per unit of the interface.
 MeasureLines lines_of(const Measurement& measured, const Pane& pane, const VolumeInfo& volume, double units,
                       bool is_open = false);
-
-/// Stands behind the value of a measurement of which not all sides are drawn.
-inline constexpr const char* SEEN_IN_PART = " (seen in part)";
 
 /// The parts of the label "Path 2: 1.25 mm", in one line; a long name is cut. `number` counts from 1.
 struct MeasureLabel {

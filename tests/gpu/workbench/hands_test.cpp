@@ -1,6 +1,8 @@
 // Work by hand: strokes that stay on what they follow, nodes with a radius of their own, cuts that are mended, clicks
 // that select, distances.
 
+#include <algorithm>
+
 #include <doctest/doctest.h>
 
 #include "engine/workbench/bindings/shortcuts.h"
@@ -351,6 +353,29 @@ TEST_CASE_FIXTURE(OnDevice, "distances are measured on what is seen, in physical
     on.perform(MeasureAt{0, {60.0, 48.0}});
     on.perform(Set{R"({"probe":{"tool":"paint"}})"});
     CHECK(on.bench.model().measuring.empty());
+}
+
+TEST_CASE_FIXTURE(OnDevice, "points of a path are taken back, and the path is kept when another tool is chosen")
+{
+    Plates on(renderer());
+    CHECK_THROWS(on.perform(TakeBackPoint{}));
+    on.perform(Set{R"({"probe":{"tool":"measure","measure":"path"}})"});
+    on.perform(MeasureAt{0, {60.0, 48.0}});
+    CHECK_THROWS(on.perform(MeasureAt{0, {60.0, 48.0}}));  // the same point
+    on.perform(MeasureAt{0, {80.0, 48.0}});
+    on.perform(MeasureAt{0, {80.0, 40.0}});
+    on.perform(TakeBackPoint{});
+    CHECK(on.bench.model().measuring.size() == 2);
+    on.perform(Set{R"({"probe":{"tool":"turn"}})"});
+    CHECK(on.bench.model().measuring.empty());
+    REQUIRE(on.bench.model().measurements.size() == 1);
+    const auto& said = on.bench.messages().all();
+    CHECK(std::ranges::any_of(said, [](const Message& each) { return each.text.starts_with("Path 1: 20"); }));
+    on.perform(EndStep{});
+    on.perform(UndoOp{});
+    CHECK(on.bench.model().measurements.empty());
+    on.perform(RedoOp{});
+    CHECK(on.bench.model().measurements.size() == 1);
 }
 
 TEST_CASE_FIXTURE(OnDevice, "a path is ended, an angle ends by itself, and both are renamed and removed as steps")

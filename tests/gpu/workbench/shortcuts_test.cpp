@@ -48,7 +48,8 @@ const std::map<std::string, std::vector<const char*>> BESIDES{
 };
 
 /// Shortcuts that use the pointer (tested in hands_test.cpp) or what a stylus holds (hand_test.cpp).
-const std::vector<std::string> LEFT_OUT{"large_screenshot", "pivot_at_pointer", "probe_onto", "grab_volume"};
+const std::vector<std::string> LEFT_OUT{"large_screenshot", "pivot_at_pointer", "probe_onto",
+                                        "grab_volume",      "end_measure",      "take_back_point"};
 
 /// Shortcuts that change nothing in the recorded state: a message is their whole effect.
 const std::vector<std::string> ONLY_SAY{"update_occlusion", "regroup_0", "quit"};

@@ -100,6 +100,7 @@ std::vector<Action> samples()
             MendCut{},
             MeasureAt{1, {8, 9}},
             EndMeasure{},
+            TakeBackPoint{},
             RenameMeasurement{2, "near the leaf"},
             RemoveMeasurement{3},
             ClearMeasurements{},

@@ -95,9 +95,9 @@ TEST_CASE("A measurement of which a slice shows some sides says so, and what is 
         {{10.0, 50.0, 50.0}, {30.0, 50.0, 50.0}, {30.0, 50.0, 90.0}, {40.0, 50.0, 90.0}}, MeasureKind::path, "a\nb"};
     const VolumeInfo& volume = panes.world.volume;
     CHECK(label_of(path, 1, volume).text() == "a b: 140 mm");
-    CHECK_FALSE(lines_of(path, panes.view, volume, 1.0).is_part);
+    CHECK(lines_of(path, panes.view, volume, 1.0).note.empty());
     const MeasureLines in_slice = lines_of(path, panes.slice, volume, 1.0);
-    CHECK(in_slice.is_part);
+    CHECK(in_slice.note == " (seen in part)");
     CHECK(in_slice.sides.size() == 2);  // one in the plane, one through it
     panes.world.session.measurements = {path};
     panes.world.model.measurements = panes.world.session.measurements;
@@ -113,7 +113,8 @@ TEST_CASE("A measurement of which a slice shows some sides says so, and what is 
     const MeasureLines seen = lines_of(through, panes.view, volume, 1.0);
     REQUIRE(seen.sides.size() == 1);
     REQUIRE(seen.label.has_value());
-    CHECK_FALSE(seen.is_part);
+    CHECK(seen.note.empty());
+    CHECK(lines_of(through, panes.slice, volume, 1.0).note == " (through the slice)");
     const Measurement behind{{{50.0, 60.0, 90.0}, {50.0, 60.0, 70.0}}, MeasureKind::distance, ""};
     CHECK(lines_of(behind, panes.view, volume, 1.0).sides.empty());
 }

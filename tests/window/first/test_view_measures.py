@@ -22,10 +22,17 @@ class Measures(Seen):
         self.open_scan(session, preferences=only_panel("measurements"))
         x, y = self.middle()
         self.click_on("Path", PANEL)
-        self.clicks((x - 60, y), (x, y - 40), (x + 60, y))
-        self.click_on("End the path", PANEL)
+        self.clicks((x - 60, y), (x, y - 40), (x + 60, y), (x + 40, y + 20))
+        self.check_key("Ctrl+Z", "take_back_point")
+        self.check_key("Enter", "end_measure")
         self.see("Path 1: ", "Status")
         self.see("Path 1: ")
+        # A path that is begun is kept when another tool is chosen, and undo takes it back.
+        self.clicks((x - 60, y), (x + 60, y))
+        self.check_key("Alt+1", "set probe.tool")
+        self.see("Path 2: ")
+        self.check_key("Ctrl+Z", "undo")
+        self.see_no_more("Path 2: ")
         self.click_on("Angle", PANEL)
         self.clicks((x - 40, y + 30), (x, y + 30), (x, y - 10))
         self.see("Angle 1: ", "Status")
@@ -41,7 +48,7 @@ class Measures(Seen):
                          [("Path 1", "path", 3), ("petiole", "angle", 3)])
         table = self.folder / "table.csv"
         self.check("export", session, "--measurements", table)
-        self.assertTrue(table.read_text().startswith("number,name,kind,length_voxel,angle_degrees,points_voxel\n"))
+        self.assertTrue(table.read_text().startswith("number,name,kind,length_voxel,angle_degrees,points_voxel_physical\n"))
 
 
 if __name__ == "__main__":

@@ -67,11 +67,11 @@ TEST_CASE("the table has units in its headings, and one row a measurement")
                                {{{1, 0, 0}, {0, 0, 0}, {0, 1, 0}}, MeasureKind::angle, "=1+1\tx"}};
     const TraceSpace space{.size = Size3(20), .spacing = SLABS, .unit = "um"};
     CHECK(measurements_table(all, space, Positions::volume, ',') ==
-          "number,name,kind,length_um,angle_degrees,points_um\r\n"
+          "number,name,kind,length_um,angle_degrees,points_um_from_corner\r\n"
           "1,\"stem, left\",distance,10,,20 20 90; 26 28 90\r\n"
           "2,'=1+1 x,angle,,90,2 0 0; 0 0 0; 0 2 0\r\n");
     const std::string tabs = measurements_table(std::span(all, 1), space, Positions::physical, '\t');
     CHECK(tabs ==
-          "number\tname\tkind\tlength_um\tangle_degrees\tpoints_um\n"
+          "number\tname\tkind\tlength_um\tangle_degrees\tpoints_um_physical\n"
           "1\t\"stem, left\"\tdistance\t10\t\t19 19 85.5; 25 27 85.5\n");
 }

@@ -35,8 +35,8 @@ public:
         }
     }
 
-    /// Returns how often a label moves by more than three lines of text against its line, from frame to frame of a whole
-    /// turn.
+    /// Returns how often a label moves by more than three lines of text against its line, from frame to frame of a
+    /// whole turn.
     int jumps(FigureMemory* memory)
     {
         int found = 0;
