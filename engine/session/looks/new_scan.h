@@ -9,8 +9,8 @@
 
 namespace shvr {
 
-/// Most voxels of a scan that gets ambient occlusion by itself on a device that is the processor: 512^3 take about 4 s
-/// there (shaders/MEASURED.md), in which the picture is shown without, before the sharp one.
+/// Most voxels of a scan that gets ambient occlusion by itself on a device that is the processor: tubes of 512^3 were
+/// sharp 7 s after the start on two cores (lavapipe); the picture without occlusion is shown meanwhile.
 inline constexpr int64_t MAX_OCCLUDED_BY_CPU = int64_t{1} << 27;
 
 /// Gives the light of the examples and, to at most `most_occluded` voxels, ambient occlusion. Leaves the light as it is
