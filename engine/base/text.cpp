@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <iterator>
 
 #include "engine/base/error.h"
@@ -102,6 +103,18 @@ std::string digits_of(double value)
 {
     char digits[32];
     const auto [end, error] = std::to_chars(std::begin(digits), std::end(digits), value);
+    SHVR_CHECK(error == std::errc());
+    return {digits, end};
+}
+
+std::string plain_digits_of(double value)
+{
+    constexpr double SMALLEST = 1e-6, LARGEST = 1e15;
+    if (value == 0.0) return "0";  // also -0
+    const double size = std::abs(value);
+    if (!(size >= SMALLEST && size <= LARGEST)) return digits_of(value);
+    char digits[32];  // a sign, a point, at most 6 zeros and 17 digits
+    const auto [end, error] = std::to_chars(std::begin(digits), std::end(digits), value, std::chars_format::fixed);
     SHVR_CHECK(error == std::errc());
     return {digits, end};
 }

@@ -35,6 +35,8 @@ std::optional<double> number_of(std::string_view word);  ///< may be NaN or infi
 
 /// Returns the fewest digits that parse back to exactly the same number.
 std::string digits_of(double value);
+/// The same for people: without an exponent where the number is 0 or between 1e-6 and 1e15 in size.
+std::string plain_digits_of(double value);
 std::string digits_of(const glm::dvec3& value);  ///< separated by spaces
 std::string digits_of(const glm::i64vec3& value);
 

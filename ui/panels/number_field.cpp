@@ -192,13 +192,6 @@ bool draw(const Field<Number>& field, std::optional<Number>& value)
     return is_changed;
 }
 
-std::string formatted(double value, const char* format)
-{
-    std::array<char, 64> text{};
-    ImGui::DataTypeFormatString(text.data(), int(text.size()), ImGuiDataType_Double, &value, format);
-    return std::string(trimmed(text.data()));
-}
-
 template <class Number>
 bool draw(const Field<Number>& field, Number& value)
 {
@@ -243,9 +236,9 @@ bool over_slider(Field<Number> field, void* value, const void* lower, const void
 
 }  // namespace
 
-bool number_field(const char* id, double& value, const char* format)
+bool number_field(const char* id, double& value)
 {
-    return draw(Field<double>{.id = id, .shown = formatted(value, format)}, value);
+    return draw(Field<double>{.id = id, .shown = plain_digits_of(value)}, value);
 }
 
 bool whole_field(const char* id, int64_t& value)
@@ -265,7 +258,7 @@ bool whole_field(const char* id, int32_t& value)
 
 bool number_field(const char* id, std::optional<double>& value)
 {
-    const std::string shown = value ? formatted(*value, "%.6g") : std::string();
+    const std::string shown = value ? plain_digits_of(*value) : std::string();
     return draw(Field<double>{.id = id, .shown = shown, .may_be_empty = true}, value);
 }
 

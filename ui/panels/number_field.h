@@ -17,8 +17,9 @@
 
 namespace shvr::ui {
 
-/// Fields of dialogs, without a visible label ("##value"). They return whether the value changed.
-bool number_field(const char* id, double& value, const char* format = "%.6g");
+/// Fields of dialogs, without a visible label ("##value"). They show all digits of a number (plain_digits_of), and
+/// return whether the value changed.
+bool number_field(const char* id, double& value);
 bool whole_field(const char* id, int64_t& value);
 bool whole_field(const char* id, int32_t& value);
 /// An empty field means null.
