@@ -4,7 +4,6 @@
 
 #include "engine/annotation/sets/brick_bits.h"
 #include "engine/base/error.h"
-#include "engine/base/text.h"
 #include "engine/volume/voxel_numbers.h"
 
 namespace shvr {
@@ -22,9 +21,14 @@ std::string named(uint8_t group, const GroupNames& name_of)
     return name.empty() || name == number ? number : sentence(number, " (", name, ')');
 }
 
-std::string voxels_in_words(int64_t voxels)
+std::string number_in_words(int64_t voxels, const ResultWords& words)
 {
-    return counted(voxels, "voxel");
+    return words.number_of ? words.number_of(voxels) : std::to_string(voxels);
+}
+
+std::string voxels_in_words(int64_t voxels, const ResultWords& words)
+{
+    return number_in_words(voxels, words) + (voxels == 1 ? " voxel" : " voxels");
 }
 
 std::string joined(const std::vector<std::string>& items)
@@ -35,47 +39,54 @@ std::string joined(const std::vector<std::string>& items)
 }
 
 /// Describes the most frequent changes from one group to another, each with its number of voxels.
-std::string moved_in_words(const OperationResult& result, const GroupNames& name_of)
+std::string moved_in_words(const OperationResult& result, const ResultWords& words)
 {
     constexpr size_t MOST = 4;
+    const char* const would = words.is_preview ? " would be" : "";
     std::vector<std::pair<std::pair<uint8_t, uint8_t>, int64_t>> moved(result.moved.begin(), result.moved.end());
     std::ranges::stable_sort(moved, std::ranges::greater(), [](const auto& each) { return each.second; });
     std::vector<std::string> items;
     int64_t rest = 0;
     for (const auto& [groups, voxels] : moved) {
-        const auto& [before, after] = groups;
-        const std::string many = voxels_in_words(voxels);
+        const std::string many = voxels_in_words(voxels, words);
+        const std::string before = named(groups.first, words.name_of), after = named(groups.second, words.name_of);
         if (items.size() == MOST)
             rest += voxels;
-        else if (after == 0)
-            items.push_back(sentence(many, " of ", named(before, name_of), " erased"));
-        else if (before == 0)
-            items.push_back(sentence(many, " painted in ", named(after, name_of)));
+        else if (groups.second == 0)
+            items.push_back(sentence(many, " of ", before, would, " erased"));
+        else if (groups.first == 0)
+            items.push_back(sentence(many, would, " painted in ", after));
         else
-            items.push_back(sentence(many, " of ", named(before, name_of), " moved to ", named(after, name_of)));
+            items.push_back(sentence(many, " of ", before, would, " moved to ", after));
     }
-    if (rest > 0) items.push_back(sentence(rest, " more"));
+    if (rest > 0) items.push_back(number_in_words(rest, words) + " more");
     return joined(items);
 }
 
-std::string kept_in_words(const OperationResult& result, const GroupNames& name_of)
+std::string kept_in_words(const OperationResult& result, const ResultWords& words)
 {
-    std::string words;
+    std::string text;
     for (const auto& [group, voxels] : result.kept_locked)
-        words += sentence("; ", named(group, name_of), " is locked, so ", voxels_in_words(voxels), " stayed");
-    if (result.kept_by_limits > 0)
-        words += sentence("; the limits kept ", voxels_in_words(result.kept_by_limits), " as ",
-                          result.kept_by_limits == 1 ? "it was" : "they were");
-    return words;
+        text += sentence("; ", named(group, words.name_of), " is locked, so ", voxels_in_words(voxels, words),
+                         words.is_preview ? " would stay" : " stayed");
+    if (result.kept_by_limits == 0) return text;
+    const bool is_one = result.kept_by_limits == 1;
+    return text + sentence("; the limits ", words.is_preview ? "would keep " : "kept ",
+                           voxels_in_words(result.kept_by_limits, words), " as ", is_one ? "it " : "they ",
+                           !words.is_preview ? (is_one ? "was" : "were")
+                           : is_one          ? "is"
+                                             : "are");
 }
 
 }  // namespace
 
-std::string sentence_of(const OperationResult& result, const std::string& title, const GroupNames& name_of)
+std::string sentence_of(const OperationResult& result, const std::string& title, const ResultWords& words)
 {
-    const std::string note = result.note.empty() ? "" : "; " + result.note, kept = kept_in_words(result, name_of);
-    if (!result.trace_changes.empty()) return sentence(title, ": ", result.note, kept);
-    return sentence(title, ": ", result.voxels == 0 ? "nothing changed" : moved_in_words(result, name_of), note, kept);
+    const std::string note = result.note.empty() ? "" : "; " + result.note, kept = kept_in_words(result, words);
+    if (!result.trace_changes.empty())
+        return sentence(title, words.is_preview ? " (preview): " : ": ", result.note, kept);
+    const char* const nothing = words.is_preview ? "nothing would change" : "nothing changed";
+    return sentence(title, ": ", result.voxels == 0 ? nothing : moved_in_words(result, words), note, kept);
 }
 
 MaskEdit::MaskEdit(const OperationInput& input, const OperationLimits& limits)

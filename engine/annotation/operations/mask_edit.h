@@ -42,8 +42,14 @@ struct OperationResult {
     int64_t bricks_read = 0, bricks_written = 0, bricks_of_intensities = 0;
 };
 
+/// How a sentence puts a result.
+struct ResultWords {
+    GroupNames name_of{};
+    bool is_preview = false;                          ///< "would be painted" instead of "painted"
+    std::function<std::string(int64_t)> number_of{};  ///< of voxels, as text; empty: digits alone
+};
 /// "Fill holes: 120 voxels painted in group 3 (wood); 2 holes; group 2 is locked, so 7 voxels stayed".
-std::string sentence_of(const OperationResult& result, const std::string& title, const GroupNames& name_of);
+std::string sentence_of(const OperationResult& result, const std::string& title, const ResultWords& words);
 
 class MaskEdit {
 public:

@@ -26,6 +26,10 @@ struct OperationModel {
     bool is_previewing = false;       ///< the answer is being computed
     bool is_preview_current = false;  ///< the answer is known and is about the present annotation
     bool has_preview_failed = false;  ///< `preview_words` say why
+    /// Line of the operation that is carried out, or that made the present annotation. Empty: neither, or another one
+    /// was previewed since.
+    std::string applied;
+    bool is_applying = false;  ///< it is still being carried out
 };
 
 /// Made by the tracer.

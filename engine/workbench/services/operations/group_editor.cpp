@@ -8,6 +8,7 @@
 #include "engine/annotation/work/work_offsets.h"
 #include "engine/base/text.h"
 #include "engine/workbench/actions/action_rows.h"
+#include "engine/workbench/lists/group_list.h"
 
 namespace shvr::ui {
 
@@ -27,6 +28,21 @@ int64_t voxels_around(std::span<const MaskBrickChange> changes, const Mask& mask
     }
     const Size3 size = around.size();
     return size.x * size.y * size.z;
+}
+
+/// Whether the operation reads the trace, or adds to it.
+bool concerns_trace(const GroupOperation& operation)
+{
+    return std::visit(
+        []<class Op>(const Op&) {
+            if constexpr (requires { Op::READS_TRACE; })
+                return true;
+            else if constexpr (requires { Op::ADDS_TRACE; })
+                return true;
+            else
+                return false;
+        },
+        operation);
 }
 
 /// Fails if the line is another action.
@@ -52,6 +68,25 @@ struct GroupEditor::Snapshot {
     GroupSet locked;
     uint64_t memory = 0;
 };
+
+GroupEditor::State GroupEditor::present(bool with_trace) const
+{
+    const Annotator& annotator = document_->annotator;
+    State state{
+        .opening = desk_.openings, .groups = annotator.revision(), .locked = locked_groups(document_->session.groups)};
+    if (with_trace) state.trace = annotator.document().trace.revision();
+    return state;
+}
+
+GroupEditor::State GroupEditor::present(const GroupOperation& operation) const
+{
+    return present(concerns_trace(operation));
+}
+
+bool GroupEditor::is_present(const State& state) const
+{
+    return document_ && state == present(state.trace.has_value());
+}
 
 std::shared_ptr<GroupEditor::Snapshot> GroupEditor::snapshot() const
 {
@@ -94,6 +129,7 @@ void GroupEditor::begin(const GroupOperation& operation)
     end_preview();
     others_.record_settings();
     is_done_ = false;
+    applied_ = {.line = std::visit([](const auto& op) { return line_of(Action(op)); }, operation), .is_running = true};
     const uint64_t revision = annotator.revision(), opening = desk_.openings;
     running_ = compute(label_of(operation), operation, [this, operation, revision, opening](OperationResult result) {
         if (!document_ || desk_.openings != opening) fail(row_of(operation).title, ": the volume is no longer open");
@@ -101,10 +137,12 @@ void GroupEditor::begin(const GroupOperation& operation)
     });
 }
 
-std::string GroupEditor::in_words(const GroupOperation& operation, const OperationResult& result) const
+std::string GroupEditor::in_words(const GroupOperation& operation, const OperationResult& result, bool is_preview) const
 {
-    return sentence_of(result, row_of(operation).title,
-                       [&](uint8_t group) { return group_of(document_->session.groups, group).name; });
+    ResultWords words{.name_of = [&](uint8_t group) { return group_of(document_->session.groups, group).name; },
+                      .is_preview = is_preview};
+    if (is_preview) words.number_of = with_separators;  // as in the panel of groups, with which it is compared
+    return sentence_of(result, row_of(operation).title, words);
 }
 
 void GroupEditor::end(const GroupOperation& operation, uint64_t revision, OperationResult result)
@@ -120,7 +158,9 @@ void GroupEditor::end(const GroupOperation& operation, uint64_t revision, Operat
     if (command) others_.show_changes(*command);
     last_ = std::move(result);
     is_done_ = true;
-    say(in_words(operation, last_), command && last_.kept_locked.empty() ? Weight::done : Weight::warning);
+    applied_.is_running = false;
+    applied_.left = present(operation);
+    say(in_words(operation, last_, false), command && last_.kept_locked.empty() ? Weight::done : Weight::warning);
 }
 
 // ---- Previews
@@ -130,13 +170,14 @@ void GroupEditor::act(const PreviewOperation& action)
     end_preview();
     if (action.operation.empty()) return;
     const GroupOperation operation = read_operation(action.operation);
-    preview_ = {.line = action.operation,
-                .words = {},
-                .is_computing = true,
-                .revision = document_->annotator.revision(),
-                .opening = desk_.openings};
-    previewing_.insert(compute("Preview: " + label_of(operation), operation,
-                               [this, operation](OperationResult result) { show(operation, std::move(result)); }));
+    if (!applied_.is_running) applied_ = {};
+    // A job that has ended before it was replaced still has its completion run.
+    const auto number = std::make_shared<Jobs::Number>(0);
+    *number = compute("Preview: " + label_of(operation), operation, [this, operation, number](OperationResult result) {
+        if (*number == preview_.job) show(operation, std::move(result));
+    });
+    preview_ = {.line = action.operation, .words = {}, .is_computing = true, .of = present(operation), .job = *number};
+    previewing_.insert(*number);
 }
 
 /// Cancels the job, too.
@@ -149,10 +190,10 @@ void GroupEditor::end_preview()
 
 void GroupEditor::show(const GroupOperation& operation, OperationResult result)
 {
-    if (!document_ || desk_.openings != preview_.opening) return;
+    if (!document_ || desk_.openings != preview_.of.opening) return;
     const bool erases = !result.moved.empty() &&
                         std::ranges::all_of(result.moved, [](const auto& each) { return each.first.second == 0; });
-    preview_.words = in_words(operation, result);
+    preview_.words = in_words(operation, result, true);
     const Size3 size = document_->volume().size;
     if (result.changes.empty()) return;
     if (voxels_around(result.changes, document_->annotator.document().mask) > MAX_DRAWN_VOXELS) {
@@ -166,23 +207,29 @@ void GroupEditor::show(const GroupOperation& operation, OperationResult result)
 
 bool GroupEditor::ends_preview(const Jobs::Finished& job)
 {
+    if (job.number == running_ && !job.is_done()) applied_ = {};
     if (previewing_.erase(job.number) == 0) return false;
-    if (job.was_cancelled) return true;  // replaced by another, or no longer wanted
+    if (job.number != preview_.job) return true;  // replaced by another, or no longer wanted
     preview_.is_computing = false;
-    preview_.has_failed = !job.failure.empty();
-    if (preview_.has_failed) preview_.words = job.failure;
+    preview_.has_failed = !job.is_done();
+    if (job.was_cancelled) preview_.words = "the preview was cancelled; any change starts another";
+    if (!job.failure.empty()) preview_.words = job.failure;
     return true;
 }
 
 OperationModel GroupEditor::model() const
 {
-    if (!document_ || desk_.openings != preview_.opening) return {};
-    return {.previewed = preview_.line,
-            .preview_words = preview_.words,
-            .is_previewing = preview_.is_computing,
-            .is_preview_current = !preview_.line.empty() && !preview_.is_computing &&
-                                  preview_.revision == document_->annotator.revision(),
-            .has_preview_failed = preview_.has_failed};
+    OperationModel model;
+    if (!document_) return model;
+    if (desk_.openings == preview_.of.opening)
+        model = {.previewed = preview_.line,
+                 .preview_words = preview_.words,
+                 .is_previewing = preview_.is_computing,
+                 .is_preview_current = !preview_.line.empty() && !preview_.is_computing && is_present(preview_.of),
+                 .has_preview_failed = preview_.has_failed};
+    if (applied_.is_running || (!applied_.line.empty() && is_present(applied_.left))) model.applied = applied_.line;
+    model.is_applying = applied_.is_running;
+    return model;
 }
 
 const OperationResult& GroupEditor::finish(const Progress& progress)
@@ -196,6 +243,7 @@ const OperationResult& GroupEditor::finish(const Progress& progress)
         } catch (...) {
             jobs_.cancel(running_);
             static_cast<void>(jobs_.wait());
+            applied_ = {};
             throw;
         }
         others_.advance_jobs();

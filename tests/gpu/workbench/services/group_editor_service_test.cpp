@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include "engine/workbench/lists/group_list.h"
 #include "engine/workbench/services/operations/group_editor.h"
 #include "tests/gpu/workbench/services/desk_with_scan.h"
 
@@ -140,7 +141,8 @@ TEST_CASE_FIXTURE(GroupsAlone,
     groups.act(grow);
     await_end();
     const std::string words = groups.model().preview_words;
-    CHECK(words == "Grow: " + std::to_string(document().operation_preview->voxels) + " voxels painted in group 1");
+    CHECK(words ==
+          "Grow: " + with_separators(document().operation_preview->voxels) + " voxels would be painted in group 1");
     document().annotator.undo();
     CHECK_FALSE(groups.model().is_preview_current);  // it is about voxels that are no longer there
     groups.act(PreviewOperation{R"({"op":"shrink","group":1,"distance":1})"});
@@ -149,6 +151,66 @@ TEST_CASE_FIXTURE(GroupsAlone,
     groups.act(PreviewOperation{});
     CHECK_FALSE(document().operation_preview);
     CHECK(groups.model().previewed.empty());
+}
+
+TEST_CASE_FIXTURE(GroupsAlone,
+                  "groups: what is applied is known until the annotation or what is previewed becomes another")
+{
+    paint();
+    const std::string line = line_of(Action(GrowOp{.group = 1, .distance = 2.0}));
+    CHECK(groups.model().applied.empty());
+    groups.act(GrowOp{.group = 1, .distance = 2.0});
+    CHECK(groups.model().applied == line);
+    CHECK(groups.model().is_applying);
+    await_end();
+    CHECK(groups.model().applied == line);
+    CHECK_FALSE(groups.model().is_applying);
+    document().annotator.undo();
+    CHECK(groups.model().applied.empty());
+    groups.act(GrowOp{.group = 1, .distance = 2.0});
+    await_end();
+    document().session.groups[2].locked = true;
+    CHECK(groups.model().applied.empty());
+    document().session.groups[2].locked = false;
+    CHECK(groups.model().applied == line);
+    groups.act(PreviewOperation{R"({"op":"shrink","group":1,"distance":1})"});
+    await_end();
+    CHECK(groups.model().applied.empty());
+    groups.act(GrowOp{.group = 1, .distance = 1e9});  // fails
+    await_end();
+    CHECK(groups.model().applied.empty());
+    CHECK_FALSE(groups.model().is_applying);
+}
+
+TEST_CASE_FIXTURE(GroupsAlone, "groups: a trace from a mask is known as applied until the trace becomes another")
+{
+    paint();
+    const std::string line = line_of(Action(TraceFromMaskOp{.group = 1}));
+    groups.act(PreviewOperation{line});
+    await_end();
+    CHECK(groups.model().is_preview_current);
+    CHECK(groups.model().preview_words.starts_with("Trace from mask (preview): "));
+    groups.act(TraceFromMaskOp{.group = 1});
+    await_end();
+    CHECK(groups.model().applied == line);
+    document().annotator.undo();
+    CHECK(groups.model().applied.empty());
+}
+
+TEST_CASE_FIXTURE(GroupsAlone, "groups: a preview that is about other locks is not current, and one can be cancelled")
+{
+    paint();
+    groups.act(PreviewOperation{R"({"op":"grow","group":1,"distance":2})"});
+    await_end();
+    CHECK(groups.model().is_preview_current);
+    document().session.groups[1].locked = true;
+    CHECK_FALSE(groups.model().is_preview_current);
+    groups.act(PreviewOperation{R"({"op":"grow","group":1,"distance":3})"});
+    desk.jobs.cancel_all();
+    await_end();
+    CHECK_FALSE(groups.model().is_previewing);
+    CHECK(groups.model().has_preview_failed);
+    CHECK(groups.model().preview_words == "the preview was cancelled; any change starts another");
 }
 
 TEST_CASE_FIXTURE(GroupsAlone,

@@ -184,8 +184,10 @@ TEST_CASE("operations state why they are not possible, and what they did")
     CHECK(sentence_of(result, "Combine groups", {}) ==
           "Combine groups: nothing changed; group 9 is locked, so 68 voxels stayed");
     CHECK(sentence_of(check_operation(IslandsOp{.group = 3, .keep = Keep::largest, .split_from = {}}, before),
-                      "Islands", [](uint8_t) { return std::string("wood"); }) ==
+                      "Islands", {.name_of = [](uint8_t) { return std::string("wood"); }}) ==
           "Islands: 3 voxels of group 3 (wood) erased; 4 parts, 1 kept");
+    CHECK(sentence_of(result, "Combine groups", {.is_preview = true}) ==
+          "Combine groups: nothing would change; group 9 is locked, so 68 voxels would stay");
     int calls = 0;
     const Mask mask = mask_of(before);
     const VolumeInfo volume = PatternSource::info_of(before.size, {1, 1, 1});
