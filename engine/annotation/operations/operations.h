@@ -223,8 +223,8 @@ inline constexpr auto OPERATIONS = std::tuple{
                                GROUP_FIELD(f, op.group);
                                f.number("from", op.from, any_number(), {"lowest intensity"});
                                f.number("to", op.to, any_number(), {"highest intensity"});
-                               f.check("from", op.from || op.to, "a number, unless to is given");
-                               f.check("to", !op.from || !op.to || *op.from <= *op.to, "at least as much as from");
+                               f.check("from", op.from || op.to, "a lowest intensity, a highest one, or both");
+                               f.check("to", !op.from || !op.to || *op.from <= *op.to, "at least the lowest intensity");
                            }),
     operation<FillHolesOp>({"fill_holes", "Fill holes", "fills what a group encloses on all sides"},
                            [](auto& f, FillHolesOp& op) { GROUP_FIELD(f, op.group); }),

@@ -1,5 +1,6 @@
 #include "engine/workbench/forms/form_names.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 
@@ -32,6 +33,15 @@ fs::path placed(const std::string& typed, const fs::path& folder)
         return fs::path(home) / typed.substr(typed.size() > 1 ? 2 : 1);
     const fs::path path = typed;
     return path.is_absolute() || folder.empty() ? path : (folder / path).lexically_normal();
+}
+
+std::string title_of_key(std::string_view key)
+{
+    std::string title(key);
+    std::ranges::replace(title, '_', ' ');
+    if (title.starts_with("ome zarr")) title.replace(0, 8, "OME-Zarr");
+    if (!title.empty() && title[0] >= 'a' && title[0] <= 'z') title[0] = char(title[0] - 'a' + 'A');
+    return title;
 }
 
 std::string bytes_in_words(double bytes)

@@ -1,9 +1,10 @@
 #pragma once
-// Names that dialogs suggest for new files, and sizes of files in words. Pure; any thread.
+// Names that dialogs suggest for new files, labels of keys, and sizes of files in words. Pure; any thread.
 
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "engine/workbench/models/model.h"
 
@@ -16,6 +17,9 @@ std::filesystem::path stem_of(std::filesystem::path path);
 std::filesystem::path base_of(const Model& model);
 /// Returns the path that a typed name means: relative names lie in `folder`, and "~" is the home folder.
 std::filesystem::path placed(const std::string& typed, const std::filesystem::path& folder);
+
+/// Returns the label of a key: "Break loops" for "break_loops".
+std::string title_of_key(std::string_view key);
 
 /// Returns "1.4 GB": 1000 bytes are 1 kB.
 std::string bytes_in_words(double bytes);

@@ -1,6 +1,7 @@
 #include "engine/workbench/forms/label_form.h"
 
 #include "engine/workbench/forms/form_names.h"
+#include "engine/workbench/forms/operation_form.h"
 
 namespace shvr::ui {
 
@@ -9,7 +10,7 @@ LabelForm suggested_label(const Model& model)
     LabelForm form;
     const std::filesystem::path base = base_of(model);
     if (!base.empty()) form.output = base.string() + "-parts.zarr";
-    form.more.threshold = model.paint_threshold();
+    form.more.threshold = suggested_intensity(model.paint_threshold(), model.volume.type);
     return form;
 }
 
