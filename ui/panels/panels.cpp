@@ -241,24 +241,63 @@ void place_kept_window(const char* id, const glm::dvec2& usual_size, const Model
     ImGui::SetNextWindowPos({float(at.x), float(at.y)}, ImGuiCond_Appearing);
 }
 
-void keep_window(const char* id, const Model& model, Actions& actions)
+namespace {
+
+/// In font sizes.
+struct Place {
+    glm::dvec2 at{0.0}, size{0.0};
+    bool operator==(const Place&) const = default;
+};
+
+Place place_of_window()
 {
-    struct Place {
-        glm::dvec2 at{0.0}, size{0.0};
-        bool operator==(const Place&) const = default;
-    };
-    static std::map<std::string, Place> places;  // as they were last seen at rest
-    if (ImGui::IsAnyMouseDown()) return;
     const double font = ImGui::GetFontSize();
     const auto rounded = [&](const ImVec2& pixels) {
         return glm::round(10.0 * glm::dvec2(pixels.x, pixels.y) / font) / 10.0;
     };
-    const Place now{rounded(ImGui::GetWindowPos()), rounded(ImGui::GetWindowSize())};
+    return {rounded(ImGui::GetWindowPos()), rounded(ImGui::GetWindowSize())};
+}
+
+}  // namespace
+
+void keep_window(const char* id, const Model& model, Actions& actions)
+{
+    static std::map<std::string, Place> places;  // as they were last seen at rest
+    if (ImGui::IsAnyMouseDown()) return;
+    const Place now = place_of_window();
     const Place before = std::exchange(places[id], now);
     const auto& windows = model.preferences.layout.windows;
     const bool is_new = ImGui::IsWindowAppearing() || before == Place{} || before == now;
     if (is_new || (windows.contains(id) && windows.at(id) == WindowPlace{now.at, now.size})) return;
     actions.push_back(Prefer{patch_of_window(id, now.at, now.size)});
+}
+
+void place_kept_corner(const char* id, const glm::vec2& first, const Model& model)
+{
+    const auto& windows = model.preferences.layout.windows;
+    const auto kept = windows.find(id);
+    if (kept == windows.end() || !kept->second.at)
+        return ImGui::SetNextWindowPos({first.x, first.y}, ImGuiCond_Appearing, {1.0f, 1.0f});
+    const double font = ImGui::GetFontSize();
+    const ImVec2 room = ImGui::GetMainViewport()->WorkSize;
+    const glm::dvec2 title{10.0 * font, double(ImGui::GetFrameHeight())};
+    const glm::dvec2 at = within_reach(font * *kept->second.at, title, {room.x, room.y});
+    ImGui::SetNextWindowPos({float(at.x), float(at.y)}, ImGuiCond_Appearing);
+}
+
+void keep_corner(const char* id, Actions& actions)
+{
+    static std::map<std::string, glm::dvec2> at_rest;  // where they were when they were not dragged
+    static std::string dragged;                        // the window that was dragged last, until that is stored
+    if (is_window_dragged()) {
+        dragged = id;
+        return;
+    }
+    const Place now = place_of_window();
+    const glm::dvec2 before = std::exchange(at_rest[id], now.at);
+    if (dragged != id) return;
+    dragged.clear();
+    if (before != now.at) actions.push_back(Prefer{patch_of_window(id, now.at, now.size)});
 }
 
 Layout draw_panels(const Model& model, const glm::uvec2& window, Actions& actions)

@@ -76,6 +76,10 @@ void tool_bar(const ImVec2& at, float width, const Model& model, Actions& action
 void place_kept_window(const char* id, const glm::dvec2& usual_size, const Model& model);
 /// Call after Begin: stores the window's position and size when the mouse is released.
 void keep_window(const char* id, const Model& model, Actions& actions);
+/// The same for a window whose size follows its contents. The first time, its lower right corner is at `first`; it is
+/// stored where it was dragged to, not where it moves as it grows.
+void place_kept_corner(const char* id, const glm::vec2& first, const Model& model);
+void keep_corner(const char* id, Actions& actions);
 /// Draws the hints of the first start over that width of the side panel, until they are dismissed. Returns the height.
 float first_hints(const Model& model, const ImVec2& begin, float width, Actions& actions);
 void preferences_window(const Model& model, Actions& actions);
@@ -92,8 +96,8 @@ void sight_items(const Model& model, Actions& actions);
 void new_nodes(const Model& model, Actions& actions);
 /// Shows the file chooser while the model requests it.
 void open_dialog(const Model& model, Actions& actions);
-/// Return whether keys go to a file chooser, and whether a file chooser or a task's dialog needs another frame because
-/// it is waiting for the disk.
+/// Return whether keys go to a file chooser, and whether a file chooser or a dialog needs another frame because it is
+/// waiting: for the disk, or for values to rest.
 bool choosers_have_keys();
 bool choosers_are_busy();
 /// Asks for the scan to which the open label image belongs, opens that, and loads the label image into it.
@@ -116,6 +120,8 @@ void ask_to_import(const std::filesystem::path& volume, Actions& actions);
 void threshold_item(const Model& model, Actions& actions);
 /// Draws the window in which an operation on groups is chosen, previewed and carried out.
 void operations_window(const Model& model, Actions& actions);
+/// Returns whether that window, as last drawn, starts a preview once its values have rested.
+bool operations_window_waits();
 /// Draws the menu of looks, and the dialog that saves one.
 void looks_menu(const Model& model, Actions& actions);
 void keep_look_dialog(const Model& model, Actions& actions);

@@ -134,6 +134,12 @@ bool resets(const char* key, Actions& actions)
     return true;
 }
 
+bool is_window_dragged()
+{
+    const ImGuiWindow* const moving = ImGui::GetCurrentContext()->MovingWindow;
+    return moving && moving->RootWindow == ImGui::GetCurrentWindowRead()->RootWindow;
+}
+
 bool begin_menu(const char* label, bool is_enabled)
 {
     const float height = ImGui::GetMainViewport()->WorkSize.y - 2.0f * ImGui::GetStyle().DisplaySafeAreaPadding.y;

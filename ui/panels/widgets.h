@@ -49,6 +49,9 @@ bool is_double_clicked();
 /// which case the caller must not send the widget's own change.
 bool resets(const char* key, Actions& actions);
 
+/// Returns whether the mouse holds the present window to drag it.
+bool is_window_dragged();
+
 /// ImGui::BeginMenu for a menu that is no higher than the window below the menu bar. A higher menu would open under the
 /// pointer, and releasing the button would choose an entry; this menu scrolls instead.
 bool begin_menu(const char* label, bool is_enabled = true);

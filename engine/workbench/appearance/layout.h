@@ -50,7 +50,7 @@ struct WindowPlace {
     bool operator==(const WindowPlace&) const = default;
 };
 inline constexpr const char* MAIN_WINDOW = "main";
-inline constexpr const char* WINDOW_IDS[] = {MAIN_WINDOW, "help", "messages", "passes"};
+inline constexpr const char* WINDOW_IDS[] = {MAIN_WINDOW, "help", "messages", "passes", "operations"};
 
 inline constexpr double SIDE_WIDTH = 25.0, MIN_SIDE_WIDTH = 17.0;
 inline constexpr double MAX_SIDE_SHARE = 0.5;  ///< share of the window's width

@@ -89,7 +89,7 @@ void fields(Fields& f, WindowLayout& layout)
               {});
     for (const auto& [id, window] : layout.windows)
         f.check("windows." + id, std::ranges::find(WINDOW_IDS, id) != std::end(WINDOW_IDS),
-                "main, help, messages or passes");
+                "main, help, messages, passes or operations");
     f.number("side_width", layout.side_width, NumberRange{MIN_SIDE_WIDTH, 1000.0}, {});
     f.flag("shows_side", layout.shows_side, {});
     f.flag("shows_tool_bar", layout.shows_tool_bar, {});

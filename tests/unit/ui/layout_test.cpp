@@ -40,6 +40,7 @@ TEST_CASE("Where a window was left is kept, and no window that is not known")
     const Preferences kept = patched(Preferences{}, patch_of_window("help", {3.5, 4.0}, {40.0, 30.5}));
     REQUIRE(kept.layout.windows.contains("help"));
     CHECK(kept.layout.windows.at("help") == WindowPlace{glm::dvec2(3.5, 4.0), glm::dvec2(40.0, 30.5)});
+    CHECK(patched(kept, patch_of_window("operations", {1.0, 2.0}, {9.0, 9.0})).layout.windows.size() == 2);
     CHECK(patched(kept, R"({"layout":null})").layout == WindowLayout{});
     CHECK_THROWS_AS(patched(Preferences{}, patch_of_window("elsewhere", {1.0, 1.0}, {2.0, 2.0})), Error);
     CHECK(patched(Preferences{}, R"({"budget_device_mib":512})").budget_device_mib == 512.0);

@@ -10,13 +10,38 @@ class Operating(Seen):
     def open_operations(self):
         self.click_on("Edit", "##MainMenuBar")
         self.click_on("Operations on groups...", "##Menu_00")
-        self.see("gives a group all voxels within a distance of it", OPERATIONS)
+        self.see("gives a group all", OPERATIONS)
 
     def choose_operation(self, title):
         """In the window of operations, which shows Grow."""
         self.open_operations()
         self.click_on("Grow", OPERATIONS)
         self.click_on(title, "##Combo_00")
+
+    def note(self, begin):
+        """What the window says above its buttons, which begins so, with all of its lines."""
+        def found():
+            texts = [seen["text"] for seen in self.seen(window=OPERATIONS)]
+            first = max((i for i, text in enumerate(texts) if text.startswith(begin)), default=len(texts))
+            end = next((i for i in range(first, len(texts)) if texts[i].startswith("Apply")), first)
+            return " ".join(texts[first:end])
+        return self.until(found, f"'{begin}' above the buttons")
+
+    def see_note(self, words):
+        """Waits until the window has those words, on one line or more."""
+        self.until(lambda: words in " ".join(seen["text"] for seen in self.seen(window=OPERATIONS)),
+                   f"'{words}' in the window")
+
+    @staticmethod
+    def as_done(previewed):
+        """The words of a preview, once it was carried out."""
+        return previewed.replace(" would be ", " ").replace(",", "")
+
+    def see_done(self, previewed):
+        """Waits until the status bar says what was previewed; it has one line."""
+        begin = self.as_done(previewed).split(";")[0]
+        self.until(lambda: any(seen["text"].replace(",", "").startswith(begin) for seen in self.seen(window="Status")),
+                   f"'{begin}' in the status bar")
 
     def painted_scan(self):
         self.open_scan(self.write_ball(), preferences={"hints_seen": 3})
@@ -47,7 +72,11 @@ class Operating(Seen):
         self.see(wanted, "##Combo_00")
         self.click_on(wanted, "##Combo_00")
 
+    def previews(self):
+        """The operations that were previewed, in order."""
+        return [json.loads(line["operation"]) for line in self.done()
+                if line["op"] == "preview_operation" and "operation" in line]
+
     def previewed(self):
         """The operation that was previewed last."""
-        lines = [line for line in self.done() if line["op"] == "preview_operation" and "operation" in line]
-        return json.loads(lines[-1]["operation"])
+        return self.previews()[-1]

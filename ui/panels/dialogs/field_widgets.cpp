@@ -8,6 +8,7 @@
 #include <imgui/imgui_stdlib.h>
 
 #include "engine/base/text.h"
+#include "engine/workbench/forms/form_names.h"
 #include "ui/files/file_list.h"
 #include "ui/panels/dialogs/file_chooser.h"
 #include "ui/panels/field_keys.h"
@@ -19,16 +20,6 @@ namespace shvr::ui {
 
 namespace {
 
-/// "break_loops" -> "Break loops"
-std::string title_of(std::string_view key)
-{
-    std::string title(key);
-    std::ranges::replace(title, '_', ' ');
-    if (title.starts_with("ome zarr")) title.replace(0, 8, "OME-Zarr");
-    if (!title.empty() && title[0] >= 'a' && title[0] <= 'z') title[0] = char(title[0] - 'a' + 'A');
-    return title;
-}
-
 /// All fields share this chooser, since at most one chooser is shown at a time.
 FileChooser chooser({.title = "Choose a file or a folder",
                      .verb = "Choose",
@@ -37,15 +28,19 @@ FileChooser chooser({.title = "Choose a file or a folder",
 ImGuiID chooser_of = 0;
 FieldKeys first_keys;  ///< gives the keyboard to the first path of a dialog that has just opened
 
-constexpr float NAME_COLUMN = 9.0f, VALUE_WIDTH = 26.0f;  ///< in font sizes
+/// In font sizes. A value with less room than MIN_BESIDE is below its name.
+constexpr float NAME_COLUMN = 9.0f, VALUE_WIDTH = 26.0f, MIN_BESIDE = 11.0f;
+constexpr float MIN_DIALOG = 18.0f;  ///< width of the narrowest dialog, in font sizes
 
 /// Draws the name at the left. Returns the label for the next widget: an id without visible text.
 std::string begin_row(std::string_view name)
 {
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(title_of(name).c_str());
-    ImGui::SameLine(NAME_COLUMN * ImGui::GetFontSize());
-    ImGui::SetNextItemWidth(VALUE_WIDTH * ImGui::GetFontSize());
+    const std::string title = title_of_key(name);
+    const bool is_beside = ImGui::GetContentRegionAvail().x >= (NAME_COLUMN + MIN_BESIDE) * ImGui::GetFontSize();
+    if (is_beside) ImGui::AlignTextToFramePadding();
+    if (is_beside || !title.empty()) ImGui::TextUnformatted(title.c_str());
+    if (is_beside) ImGui::SameLine(NAME_COLUMN * ImGui::GetFontSize());
+    ImGui::SetNextItemWidth(width_of_value(VALUE_WIDTH));
     return "##" + std::string(name);
 }
 
@@ -127,7 +122,7 @@ public:
         if (is_left_out(name)) return;
         constexpr float WIDTH = 8.0f;
         const std::string id = begin_row(name);
-        ImGui::SetNextItemWidth(WIDTH * ImGui::GetFontSize());
+        ImGui::SetNextItemWidth(width_of_value(WIDTH));
         if (ImGui::BeginCombo(id.c_str(), value.c_str())) {
             for (const std::string_view each : names)
                 if (ImGui::Selectable(std::string(each).c_str(), each == value)) value = each;
@@ -140,7 +135,7 @@ public:
     {
         if (is_left_out(name)) return;
         const std::string id = begin_row(name);
-        ImGui::InputTextWithHint(id.c_str(), words_for(about, VALUE_WIDTH * ImGui::GetFontSize()).c_str(), &value);
+        ImGui::InputTextWithHint(id.c_str(), words_for(about, width_of_value(VALUE_WIDTH)).c_str(), &value);
         tell(about);
     }
     void path(std::string_view name, std::filesystem::path& value, const About& about) override
@@ -149,7 +144,7 @@ public:
         std::string shown = value.string();
         ImGui::PushID(std::string(name).c_str());
         begin_row(name);
-        const float width = VALUE_WIDTH * ImGui::GetFontSize();
+        const float width = width_of_value(VALUE_WIDTH);
         const bool is_first = std::exchange(is_before_paths_, false);
         if (is_first) first_keys.before_field(begins_);
         bool is_changed = path_field(shown, words_for(about, width), width, tooltip_of(about));
@@ -214,7 +209,7 @@ private:
     static void words_beside(const About& about, float fonts)
     {
         ImGui::SameLine();
-        ImGui::TextDisabled("%s", fitting(about.meaning, fonts * ImGui::GetFontSize(), "(?)").c_str());
+        ImGui::TextDisabled("%s", fitting(about.meaning, width_of_value(fonts), "(?)").c_str());
         tell(about);
     }
     /// Returns the description to show in an empty field.
@@ -260,6 +255,24 @@ void field_name(const char* name)
     begin_row(name);
 }
 
+float width_of_value(float fonts)
+{
+    return std::min(fonts * ImGui::GetFontSize(), std::max(ImGui::GetContentRegionAvail().x, 1.0f));
+}
+
+void beside_or_below(float width)
+{
+    ImGui::SameLine();
+    if (ImGui::GetContentRegionAvail().x >= width) return;
+    ImGui::NewLine();
+    field_name("");
+}
+
+void button_beside_or_below(const char* label)
+{
+    beside_or_below(ImGui::CalcTextSize(label).x + 2.0f * ImGui::GetStyle().FramePadding.x);
+}
+
 bool path_row(const char* name, std::string& path, const char* meaning, const std::filesystem::path& begin, bool begins)
 {
     ImGui::PushID(name);
@@ -271,19 +284,20 @@ bool path_row(const char* name, std::string& path, const char* meaning, const st
         if (ImGui::GetActiveID() == id) ImGui::ClearActiveID();  // it would keep what it shows, not take `path`
     }
     if (began == id) first_keys.before_field(begins);
-    bool is_changed = path_field(path, meaning, VALUE_WIDTH * ImGui::GetFontSize(), meaning);
+    bool is_changed = path_field(path, meaning, width_of_value(VALUE_WIDTH), meaning);
     if (began == id) first_keys.after_field();
     is_changed |= path_button(path, begin);
     ImGui::PopID();
     return is_changed;
 }
 
-void size_dialog()
+void size_dialog(float share)
 {
-    const float width =
-        (NAME_COLUMN + VALUE_WIDTH + 4.0f) * ImGui::GetFontSize() + 4.0f * ImGui::GetStyle().WindowPadding.x;
+    const float font = ImGui::GetFontSize();
+    const float width = (NAME_COLUMN + VALUE_WIDTH + 4.0f) * font + 4.0f * ImGui::GetStyle().WindowPadding.x;
     const ImVec2 room = ImGui::GetMainViewport()->WorkSize;
-    ImGui::SetNextWindowSize({std::min(width, room.x), 0.0f});
+    const float most = std::min(std::max(share * room.x, MIN_DIALOG * font), room.x);
+    ImGui::SetNextWindowSize({std::min(width, most), 0.0f});
     ImGui::SetNextWindowSizeConstraints({0.0f, 0.0f}, room);  // a longer dialog scrolls
     ImGui::SetNextWindowScroll({0.0f, -1.0f});
 }
@@ -302,7 +316,8 @@ bool more_heading()
 
 void dialog_note(const std::string& about, const std::string& failure)
 {
-    ImGui::PushTextWrapPos((NAME_COLUMN + VALUE_WIDTH) * ImGui::GetFontSize());
+    ImGui::PushTextWrapPos(
+        std::min((NAME_COLUMN + VALUE_WIDTH) * ImGui::GetFontSize(), ImGui::GetContentRegionMax().x));
     want_glyphs(failure);
     if (failure.empty()) {
         ImGui::TextDisabled("%s", about.empty() ? " " : about.c_str());

@@ -18,8 +18,14 @@ namespace shvr::ui {
 bool draw_fields(const Fields::Visit& visit, const std::filesystem::path& beside = {}, bool begins = false,
                  std::span<const std::string_view> left_out = {});
 
-/// Draws a name at the left, for the widgets that follow it; the first of them takes the width of a value.
+/// Draws a name at the left, for the widgets that follow it; the first of them takes the width of a value. In a narrow
+/// window the name is above them.
 void field_name(const char* name);
+/// Returns that width, in pixels, or what is left of the row if that is less. `fonts`: in font sizes.
+float width_of_value(float fonts);
+/// Puts the next widget, of that width in pixels, to the right of the one before it, or below it if there is no room.
+void beside_or_below(float width);
+void button_beside_or_below(const char* label);
 /// Draws a row with a path to be typed, and a button for the chooser, which begins at `begin` while nothing is typed.
 /// `begins`: gives the keyboard to the field, which then shows `path`, with all text typed from now on. Returns whether
 /// it was changed.
@@ -28,8 +34,8 @@ bool path_row(const char* name, std::string& path, const char* meaning, const st
 /// Returns whether the chooser of a path is in front.
 bool path_chooser_is_open();
 
-/// Call before the Begin of a dialog with rows: gives it a width that holds them.
-void size_dialog();
+/// Call before the Begin of a dialog with rows: gives it a width that holds them, at most `share` of the screen's.
+void size_dialog(float share = 1.0f);
 /// Moves the present window up if it has grown beyond a height of the screen, as by more rows. Inside the window.
 void keep_above(float lower_edge);
 /// Draws the heading More; returns whether what is below it is shown.

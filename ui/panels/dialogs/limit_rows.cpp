@@ -1,12 +1,16 @@
 #include "ui/panels/dialogs/limit_rows.h"
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <iterator>
+#include <optional>
 #include <utility>
 
 #include <imgui/imgui.h>
 
 #include "engine/base/text.h"
+#include "engine/workbench/forms/operation_form.h"
 #include "engine/workbench/lists/group_list.h"
 #include "ui/panels/dialogs/field_widgets.h"
 #include "ui/panels/number_field.h"
@@ -23,6 +27,7 @@ constexpr const char* REGIONS[] = {"the whole scan", "the visible part (cutting 
 struct LimitsForm {
     bool has_range = false;
     glm::dvec2 range{0.0};
+    std::optional<std::filesystem::path> range_of{};  ///< the scan whose intensities `range` has
     std::optional<int64_t> inside{};
     bool only_unpainted = false;
     Region region = Region::everywhere;
@@ -63,22 +68,35 @@ void place_box(const glm::dvec3& voxel, const Model& model)
     limits_form.size = size;
 }
 
-void range_row()
+/// Suggests the intensities of this scan that paint reaches.
+void suggest_range(const Model& model)
 {
-    const float width = 6.0f * ImGui::GetFontSize();
-    field_name("Intensities");
-    ImGui::Checkbox("##range", &limits_form.has_range);
-    hint("Changes only voxels whose intensities, in the scan's own values, lie in this range, both ends included");
-    ImGui::BeginDisabled(!limits_form.has_range);
-    ImGui::SameLine();
+    const double low = suggested_intensity(model.paint_threshold(), model.volume.type);
+    limits_form.range = {low, std::max(low, std::ceil(model.statistics.maximum))};
+    limits_form.range_of = model.session.volume_path;
+}
+
+void range_rows(const Model& model)
+{
+    if (limits_form.range_of != model.session.volume_path) {
+        limits_form.has_range = false;
+        suggest_range(model);
+    }
+    const float width = 5.0f * ImGui::GetFontSize();
+    field_name("");
+    ImGui::Checkbox("Only some intensities", &limits_form.has_range);
+    hint("Changes only voxels whose intensities, in the scan's own values, lie in a range");
+    if (!limits_form.has_range) return;
+    field_name("Intensities from");
     ImGui::SetNextItemWidth(width);
     number_field("##low", limits_form.range.x);
+    hint("The lowest intensity of voxels that change");
     ImGui::SameLine();
     ImGui::TextUnformatted("to");
     ImGui::SameLine();
     ImGui::SetNextItemWidth(width);
     number_field("##high", limits_form.range.y);
-    ImGui::EndDisabled();
+    hint("The highest intensity of voxels that change");
 }
 
 void box_rows(const Model& model)
@@ -92,12 +110,13 @@ void box_rows(const Model& model)
     field_name("");
     if (ImGui::Button("Around the probe")) place_box(model.probe_voxel, model);
     hint("The box around the probe's ball, where the probe is now");
-    ImGui::SameLine();
+    button_beside_or_below("Around a click");
     if (ImGui::Button("Around a click")) limits_form.awaits_click = true;
     hint("The box around the probe's ball, where you click in the picture or in a slice next");
     if (!limits_form.awaits_click) return;
-    ImGui::SameLine();
-    ImGui::TextDisabled("click in the picture");
+    constexpr const char* WHAT_TO_DO = "click in the picture";
+    beside_or_below(ImGui::CalcTextSize(WHAT_TO_DO).x);
+    ImGui::TextDisabled("%s", WHAT_TO_DO);
 }
 
 void region_rows(const Model& model, const std::optional<glm::dvec3>& clicked)
@@ -118,7 +137,9 @@ void region_rows(const Model& model, const std::optional<glm::dvec3>& clicked)
                        glm::any(glm::lessThan(cut.upper, glm::dvec3(model.volume.size)));
     if (limits_form.region == Region::everywhere && hides) {
         field_name("");
+        ImGui::PushTextWrapPos(0.0f);
         ImGui::TextDisabled("Voxels behind cutting planes change, too.");
+        ImGui::PopTextWrapPos();
     }
     if (limits_form.region != Region::box) return;
     if (clicked && std::exchange(limits_form.awaits_click, false)) place_box(*clicked, model);
@@ -169,7 +190,7 @@ void group_row(const char* name, std::optional<int64_t>& group, const Model& mod
     ImGui::PushID(name);
     field_name(name);
     if (group && *group > 0) swatch(groups, uint8_t(*group));
-    ImGui::SetNextItemWidth(16.0f * ImGui::GetFontSize());
+    ImGui::SetNextItemWidth(width_of_value(16.0f));
     const std::string shown = group ? label_of_group(groups, uint8_t(*group)) : none;
     want_glyphs(shown);
     if (ImGui::BeginCombo("##group", shown.c_str(), ImGuiComboFlags_HeightLarge)) {
@@ -190,21 +211,23 @@ void group_row(const char* name, int64_t& group, const Model& model, bool has_un
     group = chosen.value_or(group);
 }
 
-std::string limit_rows(OperationLimits& limits, const Model& model, const std::optional<glm::dvec3>& clicked)
+std::string limit_rows(OperationLimits& limits, const Model& model, const std::optional<glm::dvec3>& clicked,
+                       bool limits_intensities)
 {
     if (limits_form.size != Size3(model.volume.size)) place_box(model.probe_voxel, model);
     ImGui::Separator();
     region_rows(model, clicked);
     group_row("Only in", limits_form.inside, model, "any group", true);
     hint("Changes only voxels that have this group now");
-    range_row();
+    if (limits_intensities) range_rows(model);
+    const bool has_range = limits_intensities && limits_form.has_range;
     field_name("");
     ImGui::Checkbox("Only unpainted voxels", &limits_form.only_unpainted);
     hint("No group loses voxels");
     locks_row(model);
     ImGui::Separator();
     auto [box, why] = stated_box(model);
-    limits = {.within = limits_form.has_range ? std::optional(limits_form.range) : std::nullopt,
+    limits = {.within = has_range ? std::optional(limits_form.range) : std::nullopt,
               .inside = limits_form.inside,
               .only_unpainted = limits_form.only_unpainted,
               .box = box};
@@ -213,9 +236,9 @@ std::string limit_rows(OperationLimits& limits, const Model& model, const std::o
         limits.plane_normal = cut.plane_normal;
         limits.plane_point = cut.plane_point.value_or(0.5 * glm::dvec3(model.volume.size));
     }
-    if (limits_form.has_range && !(limits_form.range.x <= limits_form.range.y))
-        return sentence("the intensities go from ", digits_of(limits_form.range.x), " to ",
-                        digits_of(limits_form.range.y), "; expected the lower one first");
+    if (has_range && !(limits_form.range.x <= limits_form.range.y))
+        return sentence("the intensities go from ", plain_digits_of(limits_form.range.x), " to ",
+                        plain_digits_of(limits_form.range.y), "; expected the lower one first");
     return why;
 }
 

@@ -17,8 +17,10 @@ void group_row(const char* name, std::optional<int64_t>& group, const Model& mod
 void group_row(const char* name, int64_t& group, const Model& model, bool has_unpainted = false);
 
 /// Draws the rows, and takes what they say into `limits`. `clicked`: a voxel that was clicked, around which a box goes.
-/// Returns why the operation cannot be limited like this; empty: it can.
-std::string limit_rows(OperationLimits& limits, const Model& model, const std::optional<glm::dvec3>& clicked);
+/// `limits_intensities`: false leaves out the range of intensities, for an operation that has one itself. Returns why
+/// the operation cannot be limited like this; empty: it can.
+std::string limit_rows(OperationLimits& limits, const Model& model, const std::optional<glm::dvec3>& clicked,
+                       bool limits_intensities);
 /// Whether the next click in the picture places the box.
 bool limit_rows_take_clicks();
 

@@ -68,18 +68,22 @@ void fewest_row(IslandsOp& op, const Model& model)
     IslandsForm& form = islands_form;
     const bool is_in_mm3 = form.is_in_mm3 && has_cubic_millimetres(model.volume);
     field_name("Smallest part");
-    ImGui::SetNextItemWidth(8.0f * ImGui::GetFontSize());
+    ImGui::SetNextItemWidth(width_of_value(8.0f));
     if (is_in_mm3)
         number_field("##mm3", form.mm3);
     else
         whole_field("##voxels", form.voxels);
     hint("Parts of exactly this size stay");
-    ImGui::SameLine();
+    const float voxels_width = ImGui::CalcTextSize("voxels").x;
     if (has_cubic_millimetres(model.volume)) {
+        const float circle = ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x;
+        const float spacing = ImGui::GetStyle().ItemSpacing.x;
+        beside_or_below(2.0f * circle + spacing + voxels_width + ImGui::CalcTextSize("mm\u00b3").x);
         if (ImGui::RadioButton("voxels", !is_in_mm3)) form.is_in_mm3 = false;
         ImGui::SameLine();
         if (ImGui::RadioButton("mm\u00b3", is_in_mm3)) form.is_in_mm3 = true;
     } else {
+        beside_or_below(voxels_width);
         ImGui::TextUnformatted("voxels");
     }
     form.voxels = std::max<int64_t>(form.voxels, 1);
@@ -128,10 +132,10 @@ std::string groups_row(const char* name, std::string& text, std::vector<uint8_t>
 {
     constexpr float WIDTH = 12.0f;
     field_name(name);
-    ImGui::SetNextItemWidth(WIDTH * ImGui::GetFontSize());
+    ImGui::SetNextItemWidth(width_of_value(WIDTH));
     ImGui::InputTextWithHint("##groups", "all", &text);
     hint("Groups, such as 1, 2; empty: all");
-    ImGui::SameLine();
+    button_beside_or_below("Active group");
     const int64_t active = std::max<int64_t>(model.brush().group, 1);
     if (ImGui::Button("Active group")) text = std::to_string(active);
     const std::optional<std::vector<uint8_t>> typed = groups_in(text);

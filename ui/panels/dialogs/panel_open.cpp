@@ -48,7 +48,8 @@ bool choosers_have_keys()
 
 bool choosers_are_busy()
 {
-    return FileChooser::is_busy() || task_dialog_waits() || load_dialog_waits() || thumbnails_are_read();
+    return FileChooser::is_busy() || task_dialog_waits() || load_dialog_waits() || thumbnails_are_read() ||
+           operations_window_waits();
 }
 
 void open_dialog(const Model& model, Actions& actions)

@@ -12,6 +12,7 @@
 #include <imgui/imgui.h>
 
 #include "engine/workbench/actions/action_rows.h"
+#include "engine/workbench/forms/operation_form.h"
 #include "ui/panels/dialogs/field_widgets.h"
 #include "ui/panels/dialogs/limit_rows.h"
 #include "ui/panels/dialogs/operation_rows.h"
@@ -26,6 +27,8 @@ namespace shvr::ui {
 namespace {
 
 constexpr const char* WINDOW = "Operations on groups";
+constexpr const char* WINDOW_ID = "operations";
+constexpr float MAX_SHARE = 0.4f;  ///< share of the screen's width, since the picture shows the preview
 
 template <size_t... index>
 std::array<GroupOperation, sizeof...(index)> one_of_each(std::index_sequence<index...>)
@@ -53,7 +56,9 @@ struct OperationsState {
     /// What is typed as lists of groups, and why it is none.
     std::array<std::string, std::variant_size_v<GroupOperation>> groups{};
     std::string why_no_groups;
-    std::string applied;  ///< line that was carried out last; it is not previewed again until something is changed
+    std::string wanted;           ///< line that is to be previewed; empty: none
+    double wanted_since_s = 0.0;  ///< of ImGui::GetTime
+    bool is_resting = false;      ///< the preview waits for the values to rest
 };
 OperationsState state;
 
@@ -76,7 +81,10 @@ void follow(const Model& model)
                 if constexpr (requires { op.with; })
                     if (op.with == op.group) op.with = op.group == 1 ? 2 : 1;
                 if constexpr (std::is_same_v<std::remove_cvref_t<decltype(op)>, ThresholdOp>)
-                    if (state.group == 0) op.from = model.paint_threshold();
+                    if (is_new_scan) {
+                        op.from = suggested_intensity(model.paint_threshold(), model.volume.type);
+                        op.to.reset();
+                    }
             },
             each);
     state.group = group;
@@ -127,7 +135,8 @@ void draw_operation(GroupOperation& operation, const Model& model)
                 state.why_no_groups = groups_row("Of groups", state.groups[state.chosen], op.of, model);
             if constexpr (std::is_same_v<Op, LassoOp>) cut_rows(op, model);
             if constexpr (requires { op.limits; }) {
-                const std::string why = limit_rows(op.limits, model, clicked);
+                constexpr bool HAS_RANGE = std::is_same_v<Op, ThresholdOp>;
+                const std::string why = limit_rows(op.limits, model, clicked, !HAS_RANGE);
                 if (state.why_no_limits.empty()) state.why_no_limits = why;
             }
         },
@@ -154,29 +163,51 @@ std::string refusal(const Model& model, const GroupOperation& operation, const s
         static_cast<void>(read_action(line, WINDOW));
     } catch (const Error& error) {
         const std::string words = error.what(), begin = std::string(WINDOW) + ": ";
-        return words.starts_with(begin) ? words.substr(begin.size()) : words;
+        return with_label(words.starts_with(begin) ? words.substr(begin.size()) : words);
     }
     return std::visit([&](const auto& op) { return why_not(model, Action(op)); }, operation);
 }
 
-void apply(const GroupOperation& operation, const std::string& line, Actions& actions)
+void apply(const GroupOperation& operation, Actions& actions)
 {
-    state.applied = line;
     std::visit([&](const auto& op) { actions.push_back(op); }, operation);
     outline_tool().clear();
 }
 
+/// Starts the preview of a line that has not changed for a moment: not every key that is typed starts one.
 void follow_preview(const Model& model, const std::string& line, bool is_possible, Actions& actions)
 {
-    const std::string wanted = state.shows_preview && is_possible && line != state.applied ? line : std::string();
+    constexpr double REST_S = 0.3;
+    const bool is_wanted = state.shows_preview && is_possible && line != model.applied;
+    const std::string wanted = is_wanted ? line : std::string();
+    if (std::exchange(state.wanted, wanted) != wanted) state.wanted_since_s = ImGui::GetTime();
     const bool is_known =
         model.previewed == wanted && (wanted.empty() || model.is_previewing || model.is_preview_current);
-    if (is_known || (wanted.empty() && model.previewed.empty())) return;
-    if (ImGui::IsAnyItemActive() && !wanted.empty()) return;  // a value is being typed or dragged
-    actions.push_back(PreviewOperation{wanted});
+    state.is_resting = !is_known && ImGui::GetTime() < state.wanted_since_s + REST_S;
+    if (!is_known && !state.is_resting) actions.push_back(PreviewOperation{wanted});
+}
+
+/// Draws what the preview has found, or why there is none.
+void draw_note(const Model& model, const std::string& line, const std::string& why)
+{
+    const bool is_complete = model.previewed == line && model.is_preview_current;
+    if (!why.empty()) return dialog_note("", why);
+    if (!state.shows_preview) return dialog_note("", "");
+    if (line == model.applied)
+        return dialog_note(model.is_applying ? "This is being applied."
+                                             : "This was applied. The next change, or Undo, shows a preview again.",
+                           "");
+    if (!is_complete) return dialog_note("The preview is not complete yet; Apply does not wait for it.", "");
+    if (model.has_preview_failed) return dialog_note("", with_label(model.preview_words));
+    dialog_note(model.preview_words, "");
 }
 
 }  // namespace
+
+bool operations_window_waits()
+{
+    return state.is_resting;
+}
 
 void threshold_item(const Model& model, Actions& actions)
 {
@@ -191,6 +222,7 @@ void threshold_item(const Model& model, Actions& actions)
 
 void operations_window(const Model& model, Actions& actions)
 {
+    state.is_resting = false;
     if (model.dialog != Dialog::operation || !model.is_open) {
         if (!model.previewed.empty()) actions.push_back(PreviewOperation{});
         outline_tool().set_on(false);
@@ -198,11 +230,11 @@ void operations_window(const Model& model, Actions& actions)
         return;
     }
     follow(model);
-    // Over the side panel rather than over the picture.
     const ImGuiViewport& screen = *ImGui::GetMainViewport();
     const float lower_edge = screen.WorkPos.y + screen.WorkSize.y - 2.0f * ImGui::GetFontSize();
-    ImGui::SetNextWindowPos({screen.WorkPos.x + screen.WorkSize.x, lower_edge}, ImGuiCond_Appearing, {1.0f, 1.0f});
-    size_dialog();
+    size_dialog(MAX_SHARE);
+    // At first over the side panel rather than over the picture.
+    place_kept_corner(WINDOW_ID, {screen.WorkPos.x + screen.WorkSize.x, lower_edge}, model);
     bool is_shown = true;
     const bool is_drawn =
         ImGui::Begin(WINDOW, &is_shown, ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
@@ -210,6 +242,7 @@ void operations_window(const Model& model, Actions& actions)
     outline_tool().set_on(is_drawn && std::holds_alternative<LassoOp>(state.operations[state.chosen]));
     if (is_drawn) {
         keep_above(lower_edge);
+        keep_corner(WINDOW_ID, actions);
         const OutlineTool::Wish wish = outline_tool().take_wish();
         if (wish == OutlineTool::Wish::cancel) outline_tool().clear();
         draw_operation(state.operations[state.chosen], model);
@@ -217,18 +250,14 @@ void operations_window(const Model& model, Actions& actions)
         const std::string line = std::visit([](const auto& op) { return line_of(Action(op)); }, operation);
         const std::string why = refusal(model, operation, line);
         ImGui::Checkbox("Preview", &state.shows_preview);
-        hint("Shows in the picture which voxels would change, and counts them");
+        hint("Shows in the picture which voxels would change, and counts them, whenever a value is changed");
         follow_preview(model, line, why.empty(), actions);
         draw_outline(model);
-        const bool is_about_it = model.previewed == line && !model.preview_words.empty();
-        const std::string known = model.is_previewing ? "Computing the preview"
-                                  : is_about_it       ? model.preview_words
-                                                      : "";
-        dialog_note(model.has_preview_failed ? "" : known, !why.empty() ? why : model.has_preview_failed ? known : "");
+        draw_note(model, line, why);
         const ImVec2 button{6.0f * ImGui::GetFontSize(), 0.0f};
         ImGui::BeginDisabled(!why.empty());
         if (ImGui::Button("Apply", button) || (why.empty() && wish == OutlineTool::Wish::apply))
-            apply(operation, line, actions);
+            apply(operation, actions);
         ImGui::EndDisabled();
         hint("Changes the voxels; Undo takes it back");
         ImGui::SameLine();
