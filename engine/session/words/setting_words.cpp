@@ -106,16 +106,40 @@ std::string group_in_words(const std::string& number, const json& groups)
     return name == plain ? plain : plain + " (" + name + ")";
 }
 
+/// Returns groups as `was` has them, and with its default look each group that only `is` describes: what a person
+/// changed is how it differs from that.
+json with_default_looks(json was, const json& is)
+{
+    Session plain;
+    plain.groups[1] = {};
+    const json look = json::parse(write_fields({}, [&](Fields& f) { fields(f, plain.groups); }))["groups"]["1"];
+    for (const auto& item : is.items())
+        if (!was.contains(item.key())) was[item.key()] = look;
+    return was;
+}
+
+/// Returns the opacity of a group, which may be a parent's.
+std::string opacity_in_words(const std::string& number, const json& groups)
+{
+    for (std::string at = number; groups.contains(at); at = std::to_string(groups[at].value("parent", 0)))
+        if (groups[at].contains("opacity"))
+            return value_in_words("groups." + at + ".opacity", groups[at]["opacity"].dump());
+    return "1";
+}
+
+/// `was`: without the default looks of new groups.
 std::string group_change(const ChangedKey& changed, const json& was, const json& is)
 {
     const std::string path = changed.key.substr(changed.key.find('.') + 1);
     const size_t dot = path.find('.');
     const std::string number = path.substr(0, dot), key = dot == std::string::npos ? "" : path.substr(dot + 1);
     const std::string group = group_in_words(number, is.contains(number) ? is : was);
-    if (key.empty()) return (changed.to.is_null() ? "removed the look of " : "added ") + group;
+    if (key.empty()) return "removed the look of " + group;
     if (key == "name") {
         if (changed.to.is_null()) return "removed the name of group " + number;
         const std::string name = changed.to.get<std::string>();
+        if (!was.contains(number) && name == "group " + number)
+            return "added " + group;  // as the action New group does
         if (changed.from.is_null()) return sentence("named group ", number, ' ', name);
         return sentence("renamed group ", number, " from ", changed.from.get<std::string>(), " to ", name);
     }
@@ -128,7 +152,17 @@ std::string group_change(const ChangedKey& changed, const json& was, const json&
     const char* const what = key == "color" ? "colour" : "opacity";
     if (changed.to.is_null()) return sentence("reset the ", what, " of ", group);
     if (key == "color") return sentence("changed the ", what, " of ", group);
-    return sentence("set the ", what, " of ", group, " to ", value_in_words(changed.key, changed.to.dump()));
+    const std::string from = opacity_in_words(number, was), to = value_in_words(changed.key, changed.to.dump());
+    return sentence("set the ", what, " of ", group, from == to ? "" : " from " + from, " to ", to);
+}
+
+std::vector<std::string> group_changes(const json& was, const json& is)
+{
+    std::vector<ChangedKey> changes;
+    add_changes(with_default_looks(was, is), is, "groups", changes);
+    std::vector<std::string> told;
+    for (const ChangedKey& changed : changes) told.push_back(group_change(changed, was, is));
+    return told;
 }
 
 bool is_flipped(const json& was, const json& is)
@@ -243,12 +277,13 @@ std::string section_change(const std::string& name, const std::string& before, c
     std::vector<std::string> told;
     if (name == "cut") {
         told = plane_changes(was, is);
+    } else if (name == "groups") {
+        told = group_changes(was, is);
     } else {
         std::vector<ChangedKey> changes;
         add_changes(was, is, std::string(section.prefix), changes);
         if (changes.size() > MAX_TOLD) return as_whole;
-        for (const ChangedKey& changed : changes)
-            told.push_back(name == "groups" ? group_change(changed, was, is) : setting_change(changed));
+        for (const ChangedKey& changed : changes) told.push_back(setting_change(changed));
     }
     if (told.empty() || told.size() > MAX_TOLD) return as_whole;
     std::string text;

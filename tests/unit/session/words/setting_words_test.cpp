@@ -49,14 +49,32 @@ TEST_CASE("numbers are told so that they differ, integers with all of their digi
 TEST_CASE("changes of a group are told with its name")
 {
     const char* const stem = R"({"groups":{"3":{"name":"stem","color":"#ff0000"}}})";
-    CHECK(words_of(R"({"groups":{"3":{"name":"stem"}}})") == "added group 3 (stem)");
+    CHECK(words_of(R"({"groups":{"3":{"name":"stem"}}})") == "named group 3 stem");
     CHECK(words_of(R"({"groups":{"3":{"name":"leaf"}}})", stem) == "renamed group 3 from stem to leaf");
     CHECK(words_of(R"({"groups":{"3":{"color":"#00ff00"}}})", stem) == "changed the colour of group 3 (stem)");
     CHECK(words_of(R"({"groups":{"3":{"color":null}}})", stem) == "reset the colour of group 3 (stem)");
     CHECK(words_of(R"({"groups":{"3":{"visible":false,"locked":true}}})", stem) ==
           "locked group 3 (stem) and hid group 3 (stem)");
     CHECK(words_of(R"({"groups":{"3":{"parent":2}}})", stem) == "moved group 3 (stem) below group 2");
-    CHECK(words_of(R"({"groups":{"3":{"opacity":0.25}}})", stem) == "set the opacity of group 3 (stem) to 0.25");
+    CHECK(words_of(R"({"groups":{"3":{"opacity":0.25}}})", stem) == "set the opacity of group 3 (stem) from 1 to 0.25");
+}
+
+TEST_CASE("a group without settings has its default look, and only what differs from that was changed")
+{
+    CHECK(words_of(R"({"groups":{"3":{"visible":false}}})") == "hid group 3");
+    CHECK(words_of(R"({"groups":{"3":{"locked":true}}})") == "locked group 3");
+    CHECK(words_of(R"({"groups":{"2":{"opacity":0.89}}})") == "set the opacity of group 2 from 1 to 0.89");
+    CHECK(words_of(R"({"groups":{"1":{"color":"#20b060"}}})") == "changed the colour of group 1");
+    CHECK(words_of(R"({"groups":{"3":{"parent":2,"color":"#20b060"}}})") ==
+          "changed the colour of group 3 and moved group 3 below group 2");
+    CHECK(words_of(R"({"groups":{"1":{"visible":false},"2":{"visible":false}}})") == "hid group 1 and hid group 2");
+    const char* const clear = R"({"groups":{"2":{"opacity":0.5},"3":{"parent":2}}})";
+    CHECK(words_of(R"({"groups":{"3":{"opacity":0.25}}})", clear) == "set the opacity of group 3 from 0.5 to 0.25");
+    CHECK(words_of(R"({"groups":{"2":{"opacity":0.250001}}})", R"({"groups":{"2":{"opacity":0.250002}}})") ==
+          "set the opacity of group 2 to 0.25");
+    // What the action New group does.
+    CHECK(words_of(R"({"groups":{"3":{"name":"group 3"}}})") == "added group 3");
+    CHECK(words_of(R"({"groups":{"3":null}})", clear) == "removed the look of group 3");
 }
 
 TEST_CASE("moved planes and measurements are told, not the numbers of their corners and points")
