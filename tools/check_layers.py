@@ -90,11 +90,11 @@ MAY_INCLUDE = {
     "engine/session/looks engine/tasks "
     "engine/jobs engine/live haptics haptics/devices engine/workbench/appearance engine/workbench/touch",
     "engine/workbench/actions": "engine/base engine/remote engine/annotation/operations engine/annotation/script engine/session engine/tasks engine/workbench/models",
-    "engine/workbench/lists": "engine/base engine/look engine/annotation/trace engine/session engine/live "
+    "engine/workbench/lists": "engine/base engine/volume engine/look engine/annotation/trace engine/session engine/live "
     "engine/workbench/models engine/workbench/actions",
     "engine/workbench/forms": "engine/base engine/remote engine/volume engine/movie engine/tasks engine/workbench/models engine/workbench/actions "
     "engine/workbench/sight",
-    "engine/workbench/sight": "engine/base engine/look engine/annotation/operations engine/annotation/trace engine/session engine/session/words engine/workbench/models "
+    "engine/workbench/sight": "engine/base engine/volume engine/look engine/annotation/operations engine/annotation/trace engine/session engine/session/words engine/workbench/models "
     "engine/workbench/lists",
     "engine/workbench/edits": "engine/session haptics engine/workbench/touch engine/workbench/models "
     "engine/workbench/actions",

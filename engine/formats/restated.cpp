@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "engine/base/error.h"
-#include "engine/base/text.h"
 #include "engine/volume/unit.h"
 
 namespace shvr {
@@ -43,10 +42,11 @@ private:
     std::unique_ptr<VolumeSource> source_;
 };
 
-/// "0.5 0.5 2 um"
+/// "0.5 x 0.5 x 2 µm"
 std::string in_words(const VolumeInfo& info)
 {
-    return digits_of(info.spacing) + (info.unit_from == Provenance::assumed ? " without a unit" : " " + info.unit);
+    return info.unit_from == Provenance::assumed ? spacing_in_words(info.spacing, "") + " without a unit"
+                                                 : spacing_in_words(info.spacing, info.unit);
 }
 
 void drop_warnings(std::vector<std::string>& warnings, std::initializer_list<const char*> parts)

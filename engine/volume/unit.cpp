@@ -32,6 +32,17 @@ std::string plain_unit(std::string_view unit)
     return printable(bare.substr(0, MAX_UNIT_BYTES));
 }
 
+std::string unit_in_words(const std::string& unit)
+{
+    return unit == "um" ? "\u00b5m" : unit;
+}
+
+std::string spacing_in_words(const glm::dvec3& spacing, const std::string& unit)
+{
+    return digits_of(spacing.x) + " x " + digits_of(spacing.y) + " x " + digits_of(spacing.z) +
+           (unit.empty() ? "" : " " + unit_in_words(unit));
+}
+
 std::optional<double> micrometres_in(const std::string& unit)
 {
     constexpr std::pair<const char*, double> LENGTHS[] = {{"um", 1.0}, {"nm", 1e-3}, {"mm", 1e3},      {"cm", 1e4},

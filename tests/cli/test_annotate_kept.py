@@ -99,7 +99,7 @@ class Kept(CliTest):
         self.given([1, 1, 1])
         self.annotate(lines[:2] + [{"op": "save"}])
         self.assertEqual(self.voxels([1, 1, 1]), (nodes[:2], 4.0))
-        corrected = "was traced with voxels of 1 1 1 um; expected 0.5 2 3 mm, this volume's: its nodes stay"
+        corrected = "was traced with voxels of 1 x 1 x 1 µm; expected 0.5 x 2 x 3 mm, this volume's: its nodes stay"
         self.given([0.5, 2, 3], "mm")
         journal = (self.folder / "session.journal").read_bytes()
         self.assertEqual(self.voxels([0.5, 2, 3]), (nodes[:2], 2.0))

@@ -32,20 +32,20 @@ class Spacing(CliTest):
         self.assertEqual(self.info(tiff, *GIVEN), ([2, 3, 4.5], "um", "given", "given", []))
         nrrd = files.write_nrrd(self.folder / "a.nrrd", PLACE)
         self.assertEqual(self.info(nrrd), ([0.5, 0.75, 1.25], "mm", "file", "file", []))
-        both = "a spacing of 2 3 4.5 um is given; the file says 0.5 0.75 1.25 mm"
+        both = "a spacing of 2 x 3 x 4.5 µm is given; the file says 0.5 x 0.75 x 1.25 mm"
         self.assertEqual(self.info(nrrd, *GIVEN), ([2, 3, 4.5], "um", "given", "given", [both]))
         self.assertEqual(self.info(nrrd, "--spacing", "2,3,4"),
                          ([2, 3, 4], "mm", "given", "file",
-                          ["a spacing of 2 3 4 mm is given; the file says 0.5 0.75 1.25 mm"]))
+                          ["a spacing of 2 x 3 x 4 mm is given; the file says 0.5 x 0.75 x 1.25 mm"]))
         self.assertEqual(self.info(nrrd, "--unit", "micron"),
                          ([0.5, 0.75, 1.25], "um", "file", "given",
-                          ["a spacing of 0.5 0.75 1.25 um is given; the file says 0.5 0.75 1.25 mm"]))
+                          ["a spacing of 0.5 x 0.75 x 1.25 µm is given; the file says 0.5 x 0.75 x 1.25 mm"]))
         # The same in another unit is no correction.
         self.assertEqual(self.info(nrrd, "--spacing", "500,750,1250", "--unit", "um")[4], [])
         header = Volume((4, 4, 4), [0] * 64, spacing=(0.5, 0.5, 2)).write(self.folder)  # without a unit
         self.assertEqual(self.info(header)[2:4], ("file", "assumed"))
         self.assertEqual(self.info(header, "--unit", "um"), ([0.5, 0.5, 2], "um", "file", "given", [
-            "a spacing of 0.5 0.5 2 um is given; the file says 0.5 0.5 2 without a unit"]))
+            "a spacing of 0.5 x 0.5 x 2 µm is given; the file says 0.5 x 0.5 x 2 without a unit"]))
         self.assertIn("(given)", self.check("info", tiff, *GIVEN).stdout)
         self.assertIn("(assumed)", self.check("info", tiff).stdout)
 

@@ -44,8 +44,8 @@ void check_place(const std::filesystem::path& path, const char* what, const Volu
     const glm::dvec3 away = glm::abs(factor * found.spacing - space.spacing);
     const bool is_equal = glm::all(glm::lessThanEqual(away, SPACING_TOLERANCE * space.spacing));
     if (!is_equal || (unit != space.unit && !(from && to)))
-        fail(path.string(), ": is ", what, " with voxels of ", digits_of(found.spacing), " ", unit, "; expected ",
-             digits_of(space.spacing), " ", space.unit, ", the spacing of this volume");
+        fail(path.string(), ": is ", what, " with voxels of ", spacing_in_words(found.spacing, unit), "; expected ",
+             spacing_in_words(space.spacing, space.unit), ", the spacing of this volume");
 }
 
 VolumeInfo info_beside(const VolumeInfo& volume, const char* name, VoxelType type)

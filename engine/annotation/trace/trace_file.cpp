@@ -40,8 +40,8 @@ void check_space(const std::string& file, const StatedSpace& stated, const Trace
         fail(file, ": is in the unit ", in_quotes(*stated.unit), "; expected ", in_quotes(expected.unit),
              ", the unit of this volume");
     if (stated.spacing && !is_equal(*stated.spacing, expected.spacing))
-        fail(file, ": is of a volume with voxels of ", digits_of(*stated.spacing), "; expected ",
-             digits_of(expected.spacing), ", the spacing of this one");
+        fail(file, ": is of a volume with voxels of ", spacing_in_words(*stated.spacing, expected.unit), "; expected ",
+             spacing_in_words(expected.spacing, expected.unit), ", the spacing of this one");
     if (!stated.is_physical) return;
     TraceSpace found{.spacing = expected.spacing,
                      .unit = expected.unit,

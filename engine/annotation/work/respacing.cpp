@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "engine/base/error.h"
-#include "engine/base/text.h"
+#include "engine/volume/unit.h"
 
 namespace shvr {
 
@@ -43,7 +43,7 @@ private:
 
 std::string in_words(const JournalSpace& space)
 {
-    return digits_of(space.spacing) + " " + space.unit;
+    return spacing_in_words(space.spacing, space.unit);
 }
 
 bool is_same_spacing(const glm::dvec3& one, const glm::dvec3& other)

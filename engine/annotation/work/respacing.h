@@ -17,7 +17,7 @@ struct JournalSpace {
     std::string unit = "voxel";
     bool operator==(const JournalSpace&) const = default;
 };
-/// "0.5 0.5 2 um"
+/// "0.5 x 0.5 x 2 µm"
 std::string in_words(const JournalSpace& space);
 
 /// Whether two spacings are equal up to rounding, which includes rounding to nine digits in a text file.

@@ -93,8 +93,9 @@ void apply_skyscan_log(const fs::path& slice, VolumeInfo& info)
         const bool states_other = info.spacing_from == Provenance::file && um &&
                                   glm::length(*um * glm::dvec2(info.spacing) - glm::dvec2(spacing)) > 1e-3 * *pixel;
         if (states_other)
-            info.warnings.push_back(sentence("the slices state a spacing of ", digits_of(info.spacing), " ", info.unit,
-                                             "; that of ", name, " is taken: ", digits_of(spacing), " um"));
+            info.warnings.push_back(sentence("the slices state a spacing of ",
+                                             spacing_in_words(info.spacing, info.unit), "; that of ", name,
+                                             " is taken: ", spacing_in_words(spacing, "um")));
         std::erase_if(info.warnings, [](const std::string& warning) {
             return warning.starts_with("no spacing stated") || warning.starts_with("no distance of ") ||
                    warning.starts_with("spacing is stated without a unit");

@@ -7,7 +7,7 @@ namespace shvr::ui {
 std::string unit_of_lengths(const VolumeInfo& volume)
 {
     if (volume.unit.empty() || volume.unit == "voxel") return "voxels";
-    return volume.unit == "um" ? "\u00b5m" : volume.unit;
+    return unit_in_words(volume.unit);
 }
 
 bool has_cubic_millimetres(const VolumeInfo& volume)

@@ -1,6 +1,7 @@
 #include "engine/workbench/lists/load_form.h"
 
 #include "engine/base/error.h"
+#include "engine/volume/unit.h"
 
 namespace shvr::ui {
 
@@ -22,9 +23,8 @@ std::string settings_of(const LoadForm& form)
 std::string size_in_words(const VolumeInfo& volume)
 {
     const Size3& size = volume.size;
-    const glm::dvec3& spacing = volume.spacing;
-    return sentence(size.x, " x ", size.y, " x ", size.z, " voxels of ", name_of(volume.type), ", each ", spacing.x,
-                    " x ", spacing.y, " x ", spacing.z, " ", volume.unit);
+    return sentence(size.x, " x ", size.y, " x ", size.z, " voxels of ", name_of(volume.type), ", each ",
+                    spacing_in_words(volume.spacing, volume.unit));
 }
 
 const char* in_words(Provenance provenance)

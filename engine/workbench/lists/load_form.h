@@ -22,7 +22,7 @@ struct LoadForm {
 
 /// Returns the settings in the form, as the action Open takes them: one per line.
 std::string settings_of(const LoadForm& form);
-/// Returns size, type and spacing as text: "512 x 512 x 300 voxels of uint16, 0.8 x 0.8 x 1.2 um".
+/// Returns size, type and spacing as text: "512 x 512 x 300 voxels of uint16, each 0.8 x 0.8 x 1.2 µm".
 std::string size_in_words(const VolumeInfo& volume);
 /// Returns where a value comes from: "stated by the file", "typed", "assumed: the file states none".
 const char* in_words(Provenance provenance);

@@ -7,15 +7,11 @@
 #include "engine/base/text.h"
 #include "engine/look/camera_motion.h"
 #include "engine/session/words/number_words.h"
+#include "engine/volume/unit.h"
 
 namespace shvr::ui {
 
 namespace {
-
-std::string spelled(const std::string& unit)
-{
-    return unit == "um" ? "\u00b5m" : unit;
-}
 
 std::string three(const glm::dvec3& values)
 {
@@ -35,7 +31,7 @@ std::string readable(double length, std::string unit)
         unit = *at;
     }
     if (unit == "voxel" && length != 1.0) unit = "voxels";
-    return number_in_words(length) + " " + spelled(unit);
+    return number_in_words(length) + " " + unit_in_words(unit);
 }
 
 }  // namespace
@@ -43,7 +39,7 @@ std::string readable(double length, std::string unit)
 std::string length_in_words(double length, const std::string& unit)
 {
     const std::string text = number_in_words(length);
-    return text + " " + (unit == "voxel" && text != "1" ? "voxels" : spelled(unit));
+    return text + " " + (unit == "voxel" && text != "1" ? "voxels" : unit_in_words(unit));
 }
 
 std::string value_in_words(const Measurement& measurement, const VolumeInfo& volume)
@@ -63,7 +59,7 @@ std::string place_in_words(const glm::dvec3& voxel, const VolumeInfo& volume)
     char text[96];
     std::snprintf(text, sizeof text, "voxel %.0f, %.0f, %.0f", whole.x, whole.y, whole.z);
     if (volume.unit == "voxel") return text;
-    return sentence(text, " (", three(voxel * volume.spacing), " ", spelled(volume.unit), ")");
+    return sentence(text, " (", three(voxel * volume.spacing), " ", unit_in_words(volume.unit), ")");
 }
 
 std::string value_in_words(const Reading& reading)

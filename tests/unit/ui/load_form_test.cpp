@@ -35,5 +35,5 @@ TEST_CASE("where a spacing comes from is said")
     CHECK(in_words(Provenance::given) == std::string("typed"));
     CHECK(in_words(Provenance::assumed) == std::string("assumed: the file states none"));
     VolumeInfo volume{.size = {3, 4, 5}, .type = VoxelType::uint16, .spacing = {1, 1, 2}, .unit = "um"};
-    CHECK(size_in_words(volume) == "3 x 4 x 5 voxels of uint16, each 1 x 1 x 2 um");
+    CHECK(size_in_words(volume) == "3 x 4 x 5 voxels of uint16, each 1 x 1 x 2 \u00b5m");
 }

@@ -11,6 +11,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/volume/gaps.h"
+#include "engine/volume/unit.h"
 #include "tests/support/volume_files.h"
 
 using namespace shvr;
@@ -53,6 +54,13 @@ TEST_CASE("a voxel type is known by its own name and by those of the header form
                                 "met_met_short", "unsigned", "block"}) {
         CHECK_FALSE(voxel_type_of(unknown).has_value());
     }
+}
+
+TEST_CASE("the size of a voxel is said with signs between its sides, and with the unit as people write it")
+{
+    CHECK(spacing_in_words({2.0, 3.0, 5.0}, "um") == "2 x 3 x 5 \u00b5m");
+    CHECK(spacing_in_words({0.8, 0.8, 1.25}, "mm") == "0.8 x 0.8 x 1.25 mm");
+    CHECK(spacing_in_words({1.0, 1.0, 2.0}, "") == "1 x 1 x 2");
 }
 
 TEST_CASE("voxels are counted in 64 bits and hostile sizes are refused by name")

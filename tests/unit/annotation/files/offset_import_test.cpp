@@ -104,9 +104,10 @@ TEST_CASE("offsets of another volume are refused with both named; the same spaci
         };
         CHECK(contains(told({{5, 4, 4}, volume.spacing, "um"}),
                        "is a volume of offsets of 5 4 3 voxels; expected 5 4 4, the size of this volume"));
-        CHECK(contains(told({volume.size, {0.5, 0.25, 1.0}, "um"}),
-                       "is a volume of offsets with voxels of 0.5 0.25 1.5 um; expected 0.5 0.25 1 um"));
-        CHECK(contains(told({volume.size, volume.spacing, "mm"}), "expected 0.5 0.25 1.5 mm"));
+        CHECK(contains(
+            told({volume.size, {0.5, 0.25, 1.0}, "um"}),
+            "is a volume of offsets with voxels of 0.5 x 0.25 x 1.5 \u00b5m; expected 0.5 x 0.25 x 1 \u00b5m"));
+        CHECK(contains(told({volume.size, volume.spacing, "mm"}), "expected 0.5 x 0.25 x 1.5 mm"));
         CHECK(is_same(import_offsets(path, {volume.size, {0.0005, 0.00025, 0.0015}, "mm"}, volume.type), field));
         CHECK(is_same(import_offsets(path, {volume.size, {1, 1, 1}, "voxel"}, volume.type), field));
     }

@@ -359,7 +359,8 @@ TEST_CASE("a trace of another volume is refused with both named")
         CHECK(contains(with([](TraceSpace& s) { s.size.y = 31; }),
                        ": is of a volume of 40 30 20 voxels; expected 40 31 20, the size of this one"));
         CHECK(contains(with([](TraceSpace& s) { s.spacing.z = 1.6; }),
-                       ": is of a volume with voxels of 0.5 0.25 1.5; expected 0.5 0.25 1.6, the spacing of this one"));
+                       ": is of a volume with voxels of 0.5 x 0.25 x 1.5 \u00b5m; expected 0.5 x 0.25 x 1.6 \u00b5m, "
+                       "the spacing of this one"));
         CHECK(contains(with([](TraceSpace& s) { s.unit = "mm"; }), ": is of a volume with voxels of"));
         CHECK(contains(with([](TraceSpace& s) { s.unit = "furlong"; }), ": is in the unit \"um\"; expected"));
         CHECK(with([](TraceSpace& s) { s.spacing.z *= 1.0 + 1e-9; }).empty());

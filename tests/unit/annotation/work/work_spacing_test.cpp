@@ -55,9 +55,10 @@ TEST_CASE("nodes stay at their voxels where the spacing is corrected, and so the
     }
     {
         const auto work = desk.open(OTHER, "mm", true);
-        CHECK(contains(desk.said,
-                       "a.journal: was traced with voxels of 1 1 1 um; expected 0.5 2 3 mm, this volume's: "
-                       "its nodes stay at their voxels, and lengths follow;"));
+        CHECK(
+            contains(desk.said,
+                     "a.journal: was traced with voxels of 1 x 1 x 1 \u00b5m; expected 0.5 x 2 x 3 mm, this volume's: "
+                     "its nodes stay at their voxels, and lengths follow;"));
         CHECK((work->document().trace.node(0) == node_at(c, 2.0, OTHER)));
     }
     auto work = desk.open(OTHER, "mm");
@@ -74,7 +75,7 @@ TEST_CASE("nodes stay at their voxels where the spacing is corrected, and so the
     CHECK(desk.said.empty());
     const glm::dvec3 third(0.25, 0.5, 8.0);
     work = desk.open(third, "mm");
-    CHECK(contains(desk.said, "was traced with voxels of 0.5 2 3 mm; expected 0.25 0.5 8 mm"));
+    CHECK(contains(desk.said, "was traced with voxels of 0.5 x 2 x 3 mm; expected 0.25 x 0.5 x 8 mm"));
     CHECK((work->document().trace.node(2) == node_at(c, 1.0, third)));
     work->undo();
     work->undo();
