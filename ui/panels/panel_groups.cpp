@@ -187,7 +187,7 @@ void right_aligned(const std::string& text, bool is_grey)
 void count_cell(int64_t count)
 {
     ImGui::TableNextColumn();
-    right_aligned(with_separators(count), count == 0);
+    right_aligned(std::to_string(count), count == 0);
     hint("Voxels of this group.");
 }
 

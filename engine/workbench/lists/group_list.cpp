@@ -126,12 +126,4 @@ std::vector<uint8_t> drawn_groups(const Session& session, const std::array<int64
     return drawn;
 }
 
-std::string with_separators(int64_t count)
-{
-    std::string text = std::to_string(count);
-    const size_t first = text.starts_with('-') ? 1 : 0;
-    for (size_t at = text.size(); at > 3 + first; at -= 3) text.insert(at - 3, 1, ',');
-    return text;
-}
-
 }  // namespace shvr::ui

@@ -46,7 +46,4 @@ std::vector<uint8_t> groups_in(const std::array<TracedGroup, 256>& traced);
 std::vector<uint8_t> drawn_groups(const Session& session, const std::array<int64_t, 256>& voxels,
                                   const TraceGraph& trace);
 
-/// Returns 1234567 as "1,234,567".
-std::string with_separators(int64_t count);
-
 }  // namespace shvr::ui

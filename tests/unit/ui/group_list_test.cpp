@@ -95,14 +95,6 @@ TEST_CASE("what a trace has in a group is counted, with mean radii")
     CHECK(copy.revision() != trace.revision());
 }
 
-TEST_CASE("numbers have separators")
-{
-    CHECK(with_separators(0) == "0");
-    CHECK(with_separators(999) == "999");
-    CHECK(with_separators(1234567) == "1,234,567");
-    CHECK(with_separators(-123) == "-123");
-}
-
 TEST_CASE("a picture shows the groups that are painted or traced, and neither hidden nor clear")
 {
     Session session;
