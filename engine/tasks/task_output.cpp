@@ -49,6 +49,14 @@ void expect_writable(const std::string& name, const std::filesystem::path& folde
         fail(name, ": cannot be written: the folder ", folder.string(), " may not be written to");
 }
 
+/// Says what is there instead of the folder.
+std::string why_no_folder(const fs::path& folder)
+{
+    std::error_code ignored;
+    return fs::exists(folder, ignored) ? folder.string() + " is a file; expected a folder"
+                                       : "there is no folder " + folder.string();
+}
+
 }  // namespace
 
 void check_output(const std::string& option, const std::filesystem::path& path,
@@ -69,8 +77,7 @@ void check_output_place(const std::filesystem::path& path)
     const std::string name = path.string();
     const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
     std::error_code ignored;
-    if (!std::filesystem::is_directory(folder, ignored))
-        fail(name, ": cannot be written: there is no folder ", folder.string());
+    if (!std::filesystem::is_directory(folder, ignored)) fail(name, ": cannot be written: ", why_no_folder(folder));
     expect_writable(name, folder);
     if (std::filesystem::is_directory(path, ignored)) fail(name, ": is a folder; expected the name of a file");
 }
@@ -112,7 +119,7 @@ void check_output_folder(const std::filesystem::path& path)
     std::error_code ignored;
     while (!std::filesystem::exists(folder, ignored) && folder.has_relative_path()) folder = folder.parent_path();
     if (!std::filesystem::is_directory(folder, ignored))
-        fail(path.string(), ": cannot be written: ", folder.string(), " is no folder");
+        fail(path.string(), ": cannot be written: ", why_no_folder(folder));
     expect_writable(path.string(), folder);
 }
 

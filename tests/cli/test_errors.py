@@ -161,7 +161,7 @@ class Usage(ErrorTest):
         (self.folder / "file").write_text("")
         for command in (["bench", "--quick", "--scenes", "fog"], ["golden", "run"], ["golden", "report"]):
             with self.subTest(command=command):
-                self.check_refused(*command, "-o", self.folder / "file" / "out", says=["file is no folder"])
+                self.check_refused(*command, "-o", self.folder / "file" / "out", says=["file is a file; expected a folder"])
 
     def test_no_two_outputs_have_one_name(self):
         session, mask = self.write_session(), self.folder / "a.nrrd"

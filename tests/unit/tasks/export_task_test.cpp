@@ -197,6 +197,12 @@ TEST_CASE("names and folders are refused before anything is written, in the word
     task = task_in(folder.path);
     task.mesh = folder.path / "none" / "a.obj";
     CHECK(contains(refusal(task), "there is no folder"));
+    {
+        const TemporaryFolder other;
+        std::ofstream(other.path / "taken") << "a file";
+        task.mesh = other.path / "taken" / "a.obj";
+        CHECK(contains(refusal(task), "taken is a file; expected a folder"));
+    }
     task = task_in(folder.path);
     task.labels = true;
     CHECK(contains(refusal(task), "is no project folder; expected one, to write --labels into, or --mask with a name"));
