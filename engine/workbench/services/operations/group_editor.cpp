@@ -160,7 +160,7 @@ void GroupEditor::end(const GroupOperation& operation, uint64_t revision, Operat
     is_done_ = true;
     applied_.is_running = false;
     applied_.left = present(operation);
-    say(in_words(operation, last_, false), command && last_.kept_locked.empty() ? Weight::done : Weight::warning);
+    say(in_words(operation, last_, false), last_.kept_locked.empty() ? Weight::done : Weight::warning);
 }
 
 // ---- Previews

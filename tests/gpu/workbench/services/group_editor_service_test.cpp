@@ -70,6 +70,22 @@ TEST_CASE_FIXTURE(GroupsAlone,
     CHECK(voxels(1) == painted + grown);
 }
 
+TEST_CASE_FIXTURE(GroupsAlone,
+                  "groups: an operation that changes nothing needs attention only where a lock kept it from it")
+{
+    const CombineOp add{.group = 7, .with = 1, .how = CombineOp::How::add};
+    groups.act(add);
+    await_end();
+    CHECK(says("Combine groups: nothing changed"));
+    CHECK(desk.messages.all().back().weight == Weight::done);
+    paint();
+    document().session.groups[1].locked = true;
+    groups.act(add);
+    await_end();
+    CHECK(says("group 1 is locked"));
+    CHECK(desk.messages.all().back().weight == Weight::warning);
+}
+
 TEST_CASE_FIXTURE(GroupsAlone, "groups: an operation that is cancelled or fails changes nothing, and says so")
 {
     paint();
