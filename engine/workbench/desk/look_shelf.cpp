@@ -47,8 +47,9 @@ void LookShelf::act(const TakeLook& action)
     const std::string patch = patch_between(document_->session, after);
     if (patch.empty()) return say("The scan has the look " + action.name + " already");
     log_instead({Set{patch}, EndStep{}});  // a log can be replayed on a machine without this look
+    others_.record_settings({});           // what was changed before is a step of its own
     others_.take_session(std::move(after));
-    others_.record_settings();
+    others_.record_settings("applied the look " + action.name);
     say("Applied the look " + action.name + "; undo takes it back");
 }
 

@@ -11,7 +11,7 @@ public:
     /// Functions of other services that it calls.
     struct Others {
         Call<void(Session)> take_session;
-        Call<void()> record_settings;
+        Call<void(const std::string& label)> record_settings;  ///< empty: the step is called by what differs
     };
     LookShelf(Desk& desk, Others others) : Service(desk), others_(std::move(others)) {}
     void act(const KeepLook& action);

@@ -292,11 +292,12 @@ void Document::note_saved()
     saved_place_ = place();
 }
 
-bool Document::record_settings()
+bool Document::record_settings(const std::string& label)
 {
     if (only_looks() || is_script_) return false;
     const SettingValues now = lasting_settings(session);
-    return annotator.change_settings(difference_of(annotator.work().settings(), now), now) != nullptr;
+    return annotator.change_settings(label.empty() ? difference_of(annotator.work().settings(), now) : label, now) !=
+           nullptr;
 }
 
 bool Document::record_sections(std::initializer_list<std::string_view> names)

@@ -155,8 +155,8 @@ struct Document {
     /// Writes view, probe and similar settings to the journal, if there is a journal. The history gets no step.
     void keep_settings();
     /// Adds all settings that changed since the last step to the history, as one step. Call it only while no stroke is
-    /// running. Returns whether any setting had changed.
-    bool record_settings();
+    /// running. Returns whether any setting had changed. `label`: what the step is called; empty: what differs.
+    bool record_settings(const std::string& label = {});
     /// The same for some sections alone, in scripts too: what a script loads is kept, though not what --set states.
     bool record_sections(std::initializer_list<std::string_view> names);
     /// Applies the settings that the history holds after undo or redo.

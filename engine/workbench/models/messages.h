@@ -39,11 +39,19 @@ public:
         ++unread_[size_t(weight)];
         if (messages_.size() > MAX_MESSAGES) messages_.pop_front();
     }
-    /// Replaces the text of the last message, for example to update progress. If there is no message, adds one.
-    void amend(double time_s, std::string text)
+    /// Replaces the text of message `number`, for example to update progress. If that is not the last message, for
+    /// example 0, adds one instead: nothing that was said in between is lost. Returns the number of the message.
+    uint64_t amend(uint64_t number, double time_s, std::string text)
     {
-        if (messages_.empty()) return add(time_s, Weight::done, std::move(text));
-        messages_.back().text = std::move(text);
+        if (messages_.empty() || messages_.back().number != number) {
+            add(time_s, Weight::done, std::move(text));
+            return count_;
+        }
+        Message& last = messages_.back();
+        last.time_s = time_s;
+        last.at = std::time(nullptr);
+        last.text = std::move(text);
+        return number;
     }
     /// Returns all kept messages, oldest first.
     const std::deque<Message>& all() const { return messages_; }

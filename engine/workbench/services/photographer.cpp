@@ -102,7 +102,14 @@ void Photographer::follow_screenshots()
         screenshots_.advance(document_->screen, stem(), is_still_, texts_of_picture(others_.pixels(), true),
                              [this] { return figure_of_picture(1); });
     if (!turn.said.empty()) say(turn.said);
-    if (!turn.progress.empty()) desk_.messages.amend(options_.now_s(), turn.progress);
+    if (!turn.progress.empty())
+        progress_message_ = desk_.messages.amend(progress_message_, options_.now_s(), turn.progress);
+}
+
+void Photographer::say_begun(std::string text, Weight weight)
+{
+    say(std::move(text), weight);
+    progress_message_ = weight == Weight::done ? desk_.messages.count() : 0;  // a warning stays
 }
 
 std::filesystem::path Photographer::stem() const
@@ -147,8 +154,8 @@ void Photographer::act(const Screenshot& action)
     screenshots_.take_large(stem(), renderer_, session, document_->camera, options,
                             texts_of_picture(session.render.size, false),
                             figure_of_picture(session.interaction.screenshot_scale));
-    say(sentence("A screenshot of ", session.render.size.x, " x ", session.render.size.y,
-                 " pixels is made in the background"));
+    say_begun(sentence("A screenshot of ", session.render.size.x, " x ", session.render.size.y,
+                       " pixels is made in the background"));
 }
 
 glm::uvec2 Photographer::pixels_of(const glm::ivec2& asked) const
@@ -202,7 +209,7 @@ void Photographer::act(const FigureTask& task)
     screenshots_.take(std::make_unique<PictureShot>(
         path, renderer_, session, document_->camera, RenderOptions{.part_pixels = PART_PIXELS}, texts,
         std::move(figure), words, task.is_copied ? PictureShot::Then(hand_over) : PictureShot::Then()));
-    say(sentence("A figure of ", size, " is drawn in the background"));
+    say_begun(sentence("A figure of ", size, " is drawn in the background"));
 }
 
 void Photographer::act(const MovieTask& task)
@@ -229,7 +236,7 @@ void Photographer::act(const MovieTask& task)
     };
     screenshots_.take(std::make_unique<MovieShot>(task.path, std::move(movie), task.frames_per_second, renderer_,
                                                   RenderOptions{.part_pixels = PART_PIXELS}, figure, texts));
-    say(std::move(said), left_out.empty() ? Weight::done : Weight::warning);
+    say_begun(std::move(said), left_out.empty() ? Weight::done : Weight::warning);
 }
 
 /// Returns the marks to draw over a picture `scale` times as large as the window; empty if the user wants no marks.

@@ -39,6 +39,8 @@ public:
     void set_still(bool is_still) { is_still_ = is_still; }
 
 private:
+    /// Says that a picture is drawn in the background; what is said of its progress takes the place of that.
+    void say_begun(std::string text, Weight weight = Weight::done);
     void follow_screenshots();
     void follow_project_picture();
     glm::uvec2 pixels_of(const glm::ivec2& asked) const;
@@ -54,6 +56,7 @@ private:
     ProjectPictures project_pictures_;
     double units_ = 1.0;
     bool is_still_ = true;
+    uint64_t progress_message_ = 0;  ///< number of the message that tells the progress of a picture; 0: none yet
     Attempt photographing_;
 };
 

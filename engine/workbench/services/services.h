@@ -34,7 +34,7 @@ struct Services {
     PresetShelf presets{desk};
     LookShelf looks{desk,
                     {.take_session = [this](Session session) { settings.take_session(std::move(session)); },
-                     .record_settings = [this] { settings.record_settings(); }}};
+                     .record_settings = [this](const std::string& label) { settings.record_settings(label); }}};
     WindowState window{desk, keeper};
     Photographer photographer{
         desk, {.pixels = [this] { return viewer.pixels(); }, .stay_open = [this] { saver.stay_open(); }}};

@@ -3,8 +3,6 @@
 #include <algorithm>
 
 #include "engine/session/session_patch.h"
-#include "engine/session/words/number_words.h"
-#include "engine/session/words/setting_words.h"
 #include "engine/workbench/actions/action_rows.h"
 #include "engine/workbench/desk/declined.h"
 #include "engine/workbench/edits/edit.h"
@@ -15,6 +13,11 @@
 namespace shvr::ui {
 
 namespace {
+
+IntensityWords intensity_words(const Document& document)
+{
+    return {document.volume().type, document.statistics.range()};
+}
 
 /// Returns whether both sessions give the same picture of the volume. Other settings may differ.
 bool look_the_same(Session before, const Session& after)
@@ -41,7 +44,7 @@ void SettingsEditor::begin_document()
     discarded_steps_.reset();
     steps_at_empty_stroke_.reset();
     to_keep_since_s_.reset();
-    session_before_hand_.reset();
+    end_drag();
 }
 
 void SettingsEditor::act(const Set& action)
@@ -57,11 +60,41 @@ void SettingsEditor::act(const Set& action)
     take_session(std::move(after));
     if (is_hand_down_ && !session_before_hand_) session_before_hand_ = before;
     const Session& since = session_before_hand_ ? *session_before_hand_ : before;
-    std::string said = special_sentence(since, document_->session);
-    if (said.empty()) said = capitalised(difference_in_words(since, document_->session));
-    if (!said.empty()) say(std::move(said));
+    say_change(change_since(since));
     for (std::string& removed : removed_keys_in(session_document(action.patch, "settings"), "settings"))
         say(std::move(removed), Weight::warning);
+}
+
+/// A transfer function that a preset gives is said by the preset's name, however it was chosen.
+std::string SettingsEditor::change_since(const Session& before) const
+{
+    const TransferFunction& function = document_->session.transfer_function;
+    if (!(before.transfer_function == function)) {
+        const VolumeStatistics& statistics = document_->statistics;
+        const Model now = desk_.model();
+        for (const TransferPreset& preset : now.presets)
+            if (transfer_function_of(preset, statistics) == function) return "Transfer function: " + preset.name;
+        if (automatic_transfer_function(statistics) == function) return "Transfer function: from the histogram";
+    }
+    return change_in_words(before, document_->session, intensity_words(*document_));
+}
+
+/// Says what changed. A drag has one message, which follows it, as it has one step of the history.
+void SettingsEditor::say_change(std::string said)
+{
+    if (!session_before_hand_) {
+        if (!said.empty()) say(std::move(said));
+        return;
+    }
+    if (said.empty() && drag_message_ == 0) return;
+    if (said.empty()) said = "Everything is as it was";
+    drag_message_ = desk_.messages.amend(drag_message_, options_.now_s(), std::move(said));
+}
+
+void SettingsEditor::end_drag()
+{
+    session_before_hand_.reset();
+    drag_message_ = 0;
 }
 
 void SettingsEditor::act(const NewGroup&)
@@ -86,7 +119,8 @@ void SettingsEditor::act(const AutoContrast&)
     after.view.slices.black = contrast.lower;
     after.view.slices.white = contrast.upper;
     take_session(std::move(after));
-    say(sentence("Slices: black at ", number_in_words(contrast.lower), ", white at ", number_in_words(contrast.upper)));
+    const IntensityWords intensity = intensity_words(*document_);
+    say(sentence("Slices: black at ", intensity(contrast.lower), ", white at ", intensity(contrast.upper)));
 }
 
 void SettingsEditor::act(const TakePreset& action)
@@ -191,17 +225,18 @@ void SettingsEditor::note_edit()
 void SettingsEditor::follow_settings()
 {
     const bool is_being_set = std::exchange(was_set_in_this_turn_, false) || is_hand_down_;
-    if (!is_hand_down_) session_before_hand_.reset();
+    if (!is_hand_down_) end_drag();
     if (!settings_to_record_ || is_being_set) return;
     record_settings();
 }
 
 /// Makes changed settings a history step now, so that undo reverts them separately from later changes.
-void SettingsEditor::record_settings()
+void SettingsEditor::record_settings(const std::string& label)
 {
     if (document_->annotator.stroke_is_running() || document_->annotator.work().is_saving_as()) return;
     settings_to_record_ = false;
-    if (document_->record_settings() && log_) log_(line_of(EndStep{}));
+    end_drag();
+    if (document_->record_settings(label) && log_) log_(line_of(EndStep{}));
 }
 
 // ---- The history ----------------------------------------------------------------------------------------------------

@@ -39,7 +39,8 @@ public:
     /// to rest, and every few seconds while they keep changing.
     void note_to_keep();
     /// Makes pending changes a history step, so that undo reverts them separately from later changes.
-    void record_settings();
+    /// `label`: what the step is called, for example "applied the look mine"; empty: what differs.
+    void record_settings(const std::string& label = {});
     bool has_settings_to_record() const { return settings_to_record_; }
     /// Returns whether the view, the probe or similar settings changed since they were last written to the journal.
     bool has_view_to_keep() const { return to_keep_since_s_.has_value(); }
@@ -55,6 +56,9 @@ public:
 
 private:
     void keep_begun_path(Session& after);
+    std::string change_since(const Session& before) const;
+    void say_change(std::string said);
+    void end_drag();
     void settings_changed(const Session& before);
     void follow_view();
     void follow_settings();
@@ -68,6 +72,7 @@ private:
     std::optional<double> to_keep_since_s_;       ///< time of the oldest view change not in the journal; null: none
     double last_change_s_ = 0.0;                  ///< time of the last change to be written to the journal
     std::optional<Session> session_before_hand_;  ///< the session before the user began to drag a control
+    uint64_t drag_message_ = 0;                   ///< number of the message about that drag; 0: none
     /// Number of undoable steps just after the work was discarded. While this number is unchanged, nothing is saved.
     std::optional<size_t> discarded_steps_;
     /// Number of undoable steps after a stroke that changed nothing; while it is unchanged, undo reverts no step.

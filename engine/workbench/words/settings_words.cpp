@@ -5,6 +5,7 @@
 
 #include "engine/session/quality.h"
 #include "engine/session/words/number_words.h"
+#include "engine/session/words/setting_words.h"
 #include "engine/workbench/bindings/tools.h"
 #include "engine/workbench/words/touch_words.h"
 
@@ -62,12 +63,13 @@ std::optional<double> shift_between(const TransferFunction& was, const TransferF
     return shift;
 }
 
-std::string sentence_about(const TransferFunction& was, const TransferFunction& is)
+std::string sentence_about(const TransferFunction& was, const TransferFunction& is, const IntensityWords& intensity)
 {
     const std::optional<double> shift = shift_between(was, is);
-    if (shift) return "Transfer function shifted by " + number_in_words(*shift);
-    return sentence("Transfer function of ", is.points().size(), " points, from ", number_in_words(is.lower()), " to ",
-                    number_in_words(is.upper()));
+    if (shift)
+        return "Transfer function shifted by " + (std::abs(*shift) < 1.0 ? number_in_words(*shift) : intensity(*shift));
+    return sentence("Transfer function of ", is.points().size(), " points, from ", intensity(is.lower()), " to ",
+                    intensity(is.upper()));
 }
 
 /// Describes a change of the curve from arriving ambient light to displayed light.
@@ -110,9 +112,8 @@ std::string sentence_about(const FeelSettings& was, const FeelSettings& is)
     return {};
 }
 
-}  // namespace
-
-std::string special_sentence(const Session& was, const Session& is)
+/// Returns a sentence about a change of settings that needs more words than the new value; empty for other changes.
+std::string special_sentence(const Session& was, const Session& is, const IntensityWords& intensity)
 {
     const ProbeSettings &before = was.probe, &after = is.probe;
     if (was.view.arrangement != is.view.arrangement) return sentence_about(is.view);
@@ -149,7 +150,7 @@ std::string special_sentence(const Session& was, const Session& is)
         return sentence("Workspace scale ", scale, ": the probe moves ", scale, " times as far as at 1");
     }
     if (!(was.transfer_function == is.transfer_function))
-        return sentence_about(was.transfer_function, is.transfer_function);
+        return sentence_about(was.transfer_function, is.transfer_function, intensity);
     if (was.render.paging != is.render.paging)
         return is.render.paging == Paging::always  ? "The volume is loaded in pieces, as the view needs them"
                : is.render.paging == Paging::never ? "The volume is loaded as a whole"
@@ -169,6 +170,45 @@ std::string special_sentence(const Session& was, const Session& is)
         return is.render.exact_integral ? "Exact integral on: light is integrated between borders of voxels"
                                         : "Exact integral off: light is sampled in steps";
     return {};
+}
+
+}  // namespace
+
+IntensityWords::IntensityWords(VoxelType type, const ValueRange& range)
+{
+    constexpr double FEW_VALUES = 20.0;  // of which fractions matter
+    are_whole_ = !is_float(type) && range.upper - range.lower > FEW_VALUES;
+}
+
+double IntensityWords::said(double intensity) const
+{
+    return are_whole_ ? std::round(intensity) : intensity;
+}
+
+std::string IntensityWords::operator()(double intensity) const
+{
+    return number_in_words(said(intensity));
+}
+
+Session IntensityWords::said(Session session) const
+{
+    const auto say = [this](std::optional<double>& intensity) {
+        if (intensity) intensity = said(*intensity);
+    };
+    say(session.probe.brush.threshold);
+    say(session.probe.haptic_threshold);
+    say(session.view.slices.black);
+    say(session.view.slices.white);
+    if (session.probe.brush.density) say(session.probe.brush.density->offset);
+    return session;
+}
+
+std::string change_in_words(const Session& was, const Session& is, const IntensityWords& intensity)
+{
+    std::string said = special_sentence(was, is, intensity);
+    if (said.empty()) said = capitalised(difference_in_words(intensity.said(was), intensity.said(is)));
+    // Intensities that differ by less than a whole number.
+    return said.empty() ? capitalised(difference_in_words(was, is)) : said;
 }
 
 }  // namespace shvr::ui

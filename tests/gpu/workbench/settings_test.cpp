@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include "engine/workbench/edits/edit.h"
 #include "tests/support/gpu.h"
 #include "tests/support/volume_files.h"
 #include "tests/support/workbench_state.h"
@@ -61,6 +62,47 @@ TEST_CASE_FIXTURE(Settings, "a changed curve of ambient occlusion is said in wor
     CHECK(set(R"({"light":{"occlusion":{"mapping":null}}})") > 0);
     CHECK(said() == "Occlusion curve: a power again");
     CHECK(perform(UndoOp{1}) > 0);
+}
+
+TEST_CASE_FIXTURE(Settings,
+                  "a transfer function that a preset gives is said by the preset's name, however it was chosen")
+{
+    const char* const two =
+        R"({"transfer_function":{"points":[{"intensity":90,"opacity":0},{"intensity":200,"opacity":1}]}})";
+    set(two);
+    CHECK(bench.messages().last() == "Transfer function of 2 points, from 90 to 200");
+    perform(edited(bench.model().session, [&](Session& session) {
+        session.transfer_function = transfer_function_of(transfer_preset_named("viridis"), bench.model().statistics);
+    }));
+    CHECK(bench.messages().last() == "Transfer function: viridis");
+    set(two);
+    set(R"({"transfer_function":{"points":null,"preset":"fire"}})");
+    CHECK(bench.messages().last() == "Transfer function: fire");
+    perform(edited(bench.model().session, [&](Session& session) {
+        session.transfer_function = automatic_transfer_function(bench.model().statistics);
+    }));
+    CHECK(bench.messages().last() == "Transfer function: from the histogram");
+}
+
+TEST_CASE_FIXTURE(OnDevice,
+                  "a look that was applied is undone by its name, and leaves earlier changes a step of their own")
+{
+    const TemporaryFolder folder;
+    Workbench bench(renderer(), {.has_servo = false, .settings = folder.path});
+    bench.open(write_tubes_session(folder.path), {});
+    settle(bench);
+    bench.perform(KeepLook{.name = "mine", .path = {}});
+    bench.perform(Set{R"({"light":{"ambient":0.5}})"});
+    settle(bench);
+    bench.perform(Set{R"({"groups":{"3":{"visible":false}}})"});
+    bench.perform(TakeLook{"mine"});
+    CHECK(bench.messages().last() == "Applied the look mine; undo takes it back");
+    CHECK(bench.model().session.light.ambient == 0.3);
+    bench.perform(UndoOp{1});
+    CHECK(bench.messages().last() == "Undone: applied the look mine");
+    CHECK(bench.model().session.light.ambient == 0.5);
+    bench.perform(UndoOp{1});
+    CHECK(bench.messages().last() == "Undone: hid group 3");
 }
 
 TEST_CASE_FIXTURE(Settings, "how the picture looks is a step of the history, how it is made is none")

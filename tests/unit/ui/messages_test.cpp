@@ -100,6 +100,26 @@ TEST_CASE("errors and warnings count as unread until the messages are looked at"
     CHECK(unread_in_words(log) == "1 error");
 }
 
+TEST_CASE("a message follows what it tells, but never takes the place of another")
+{
+    MessageLog log;
+    const uint64_t number = log.amend(0, 1.0, "20 %");
+    CHECK(number == 1);
+    CHECK(log.amend(number, 5.0, "40 %") == number);
+    REQUIRE(log.all().size() == 1);
+    CHECK(log.last() == "40 %");
+    CHECK(log.all().back().time_s == 5.0);
+    log.add(6.0, Weight::warning, "careful");
+    CHECK(log.amend(number, 7.0, "60 %") == 3);
+    REQUIRE(log.all().size() == 3);
+    CHECK(log.all()[0].text == "40 %");
+    CHECK(log.all()[1].text == "careful");
+    CHECK(log.all()[1].weight == Weight::warning);
+    CHECK(log.all()[2].weight == Weight::done);
+    CHECK(log.amend(0, 8.0, "of something else") == 4);
+    CHECK(log.count() == 4);
+}
+
 TEST_CASE("the last 50 actions are remembered, those that follow the mouse once, and refused ones as such")
 {
     RecentActions recent;

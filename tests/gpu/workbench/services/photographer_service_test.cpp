@@ -1,5 +1,6 @@
 // The photographer alone: names of pictures, and a large one that ends or is cancelled.
 
+#include <algorithm>
 #include <fstream>
 
 #include <doctest/doctest.h>
@@ -73,7 +74,10 @@ TEST_CASE_FIXTURE(PhotographerAlone, "photographer: a movie turns, and a cancell
 {
     const MovieTask task{.path = folder.path / "frames", .turntable_degrees = 180.0, .frames = 3, .pixels = {24, 20}};
     photographer.act(task);
+    desk.say("careful", Weight::warning);
     until([&] { photographer.advance(); }, [&] { return !photographer.has_large(); });
+    const std::deque<Message>& all = desk.messages.all();
+    CHECK(std::ranges::count(all, std::string("careful"), &Message::text) == 1);  // its progress is said after that
     CHECK(says("frames (3 frames, 24 x 20 pixels)"));
     CHECK_FALSE(read_png(task.path / "frame-0001.png") == read_png(task.path / "frame-0002.png"));
     photographer.act(task);

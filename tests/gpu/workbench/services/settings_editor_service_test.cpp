@@ -79,6 +79,60 @@ TEST_CASE_FIXTURE(SettingsAlone, "settings: a change becomes a step when the han
     CHECK(document().session.light.ambient == 0.5);
 }
 
+TEST_CASE_FIXTURE(SettingsAlone, "settings: a drag is one message, which follows it and replaces no other")
+{
+    const size_t before = desk.messages.all().size();
+    const auto texts = [&] {
+        std::string all;
+        for (size_t i = before; i < desk.messages.all().size(); ++i) all += desk.messages.all()[i].text + "\n";
+        return all;
+    };
+    const auto drag_to = [&](int voxel) {
+        set(sentence(R"({"cut":{"upper":[)", voxel, ",1048576,1048576]}}").c_str());
+        settings.advance();
+    };
+    settings.set_hand_down(true);
+    drag_to(30);
+    const double begun_s = desk.messages.all().back().time_s;
+    later_s += 60.0;
+    drag_to(25);
+    drag_to(20);
+    CHECK(texts() == "Moved the far x cutting plane to voxel 20\n");
+    CHECK(desk.messages.all().back().time_s >= begun_s + 60.0);
+    desk.say("careful", Weight::warning);
+    drag_to(19);
+    drag_to(18);
+    const std::string first =
+        "Moved the far x cutting plane to voxel 20\ncareful\nMoved the far x cutting plane to voxel 18\n";
+    CHECK(texts() == first);
+    settings.set_hand_down(false);
+    settings.advance();
+    settings.advance();
+    CHECK(settings.model().undoable == 1);
+    // The next drag is another message, and one that ends where it began has done nothing.
+    settings.set_hand_down(true);
+    drag_to(15);
+    CHECK(texts() == first + "Moved the far x cutting plane to voxel 15\n");
+    drag_to(18);
+    CHECK(texts() == first + "Everything is as it was\n");
+    drag_to(12);
+    settings.act(EndStep{});  // two steps are two sentences
+    drag_to(10);
+    CHECK(texts() ==
+          first + "Moved the far x cutting plane to voxel 12\n" + "Moved the far x cutting plane to voxel 10\n");
+}
+
+TEST_CASE_FIXTURE(SettingsAlone, "settings: hiding a group adds none, and the action New group does")
+{
+    set(R"({"groups":{"3":{"visible":false}}})");
+    CHECK(said() == "Hid group 3");
+    settings.act(UndoOp{});
+    CHECK(said() == "Undone: hid group 3");
+    settings.act(NewGroup{});
+    settings.act(UndoOp{});
+    CHECK(said() == "Undone: added group 1");
+}
+
 TEST_CASE_FIXTURE(SettingsAlone, "settings: after an empty stroke the first undo changes nothing")
 {
     set(R"({"light":{"ambient":0.25}})");
