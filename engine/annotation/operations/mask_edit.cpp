@@ -4,6 +4,7 @@
 
 #include "engine/annotation/sets/brick_bits.h"
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 #include "engine/volume/voxel_numbers.h"
 
 namespace shvr {
@@ -19,16 +20,6 @@ std::string named(uint8_t group, const GroupNames& name_of)
     if (group == 0) return "unpainted";
     const std::string number = sentence("group ", int(group)), name = name_of ? name_of(group) : std::string();
     return name.empty() || name == number ? number : sentence(number, " (", name, ')');
-}
-
-std::string number_in_words(int64_t voxels, const ResultWords& words)
-{
-    return words.number_of ? words.number_of(voxels) : std::to_string(voxels);
-}
-
-std::string voxels_in_words(int64_t voxels, const ResultWords& words)
-{
-    return number_in_words(voxels, words) + (voxels == 1 ? " voxel" : " voxels");
 }
 
 std::string joined(const std::vector<std::string>& items)
@@ -48,7 +39,7 @@ std::string moved_in_words(const OperationResult& result, const ResultWords& wor
     std::vector<std::string> items;
     int64_t rest = 0;
     for (const auto& [groups, voxels] : moved) {
-        const std::string many = voxels_in_words(voxels, words);
+        const std::string many = counted(voxels, "voxel");
         const std::string before = named(groups.first, words.name_of), after = named(groups.second, words.name_of);
         if (items.size() == MOST)
             rest += voxels;
@@ -59,7 +50,7 @@ std::string moved_in_words(const OperationResult& result, const ResultWords& wor
         else
             items.push_back(sentence(many, " of ", before, would, " moved to ", after));
     }
-    if (rest > 0) items.push_back(number_in_words(rest, words) + " more");
+    if (rest > 0) items.push_back(std::to_string(rest) + " more");
     return joined(items);
 }
 
@@ -67,12 +58,12 @@ std::string kept_in_words(const OperationResult& result, const ResultWords& word
 {
     std::string text;
     for (const auto& [group, voxels] : result.kept_locked)
-        text += sentence("; ", named(group, words.name_of), " is locked, so ", voxels_in_words(voxels, words),
+        text += sentence("; ", named(group, words.name_of), " is locked, so ", counted(voxels, "voxel"),
                          words.is_preview ? " would stay" : " stayed");
     if (result.kept_by_limits == 0) return text;
     const bool is_one = result.kept_by_limits == 1;
     return text + sentence("; the limits ", words.is_preview ? "would keep " : "kept ",
-                           voxels_in_words(result.kept_by_limits, words), " as ", is_one ? "it " : "they ",
+                           counted(result.kept_by_limits, "voxel"), " as ", is_one ? "it " : "they ",
                            !words.is_preview ? (is_one ? "was" : "were")
                            : is_one          ? "is"
                                              : "are");

@@ -45,8 +45,7 @@ struct OperationResult {
 /// How a sentence puts a result.
 struct ResultWords {
     GroupNames name_of{};
-    bool is_preview = false;                          ///< "would be painted" instead of "painted"
-    std::function<std::string(int64_t)> number_of{};  ///< of voxels, as text; empty: digits alone
+    bool is_preview = false;  ///< "would be painted" instead of "painted"
 };
 /// "Fill holes: 120 voxels painted in group 3 (wood); 2 holes; group 2 is locked, so 7 voxels stayed".
 std::string sentence_of(const OperationResult& result, const std::string& title, const ResultWords& words);

@@ -139,9 +139,8 @@ void GroupEditor::begin(const GroupOperation& operation)
 
 std::string GroupEditor::in_words(const GroupOperation& operation, const OperationResult& result, bool is_preview) const
 {
-    ResultWords words{.name_of = [&](uint8_t group) { return group_of(document_->session.groups, group).name; },
-                      .is_preview = is_preview};
-    if (is_preview) words.number_of = with_separators;  // as in the panel of groups, with which it is compared
+    const ResultWords words{.name_of = [&](uint8_t group) { return group_of(document_->session.groups, group).name; },
+                            .is_preview = is_preview};
     return sentence_of(result, row_of(operation).title, words);
 }
 

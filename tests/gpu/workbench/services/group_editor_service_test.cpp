@@ -158,7 +158,7 @@ TEST_CASE_FIXTURE(GroupsAlone,
     await_end();
     const std::string words = groups.model().preview_words;
     CHECK(words ==
-          "Grow: " + with_separators(document().operation_preview->voxels) + " voxels would be painted in group 1");
+          "Grow: " + std::to_string(document().operation_preview->voxels) + " voxels would be painted in group 1");
     document().annotator.undo();
     CHECK_FALSE(groups.model().is_preview_current);  // it is about voxels that are no longer there
     groups.act(PreviewOperation{R"({"op":"shrink","group":1,"distance":1})"});
