@@ -16,7 +16,8 @@ namespace {
 /// Endings that only annotation has, and words in names of files with any other ending.
 constexpr std::array<std::string_view, 6> ENDINGS{".mask", ".offset", ".swc", ".graphml", ".rsml", ".seg.nrrd"};
 constexpr std::array<std::string_view, 5> WORDS{"mask", "label", "segmentation", "trace", "offset"};
-constexpr std::array<std::string_view, 6> IMAGES{".nrrd", ".tif", ".tiff", ".zarr", ".txt", ".nii.gz"};
+constexpr std::array<std::string_view, 11> IMAGES{".nrrd", ".nhdr", ".tif",    ".tiff", ".zarr", ".mha",
+                                                  ".mhd",  ".nii",  ".nii.gz", ".hdr",  ".txt"};
 
 bool looks_like_annotation(const std::string& name)
 {

@@ -15,7 +15,8 @@ TEST_CASE("annotation beside a scan is found by its names, the newest first, wit
     const TemporaryFolder folder;
     const auto now = std::filesystem::file_time_type::clock::now();
     int age = 0;
-    for (const char* name : {"leaf-mask.nrrd", "traced.swc", "leaf.tif", "own.mask", "Labels.tif", "notes.txt"}) {
+    for (const char* name : {"leaf-mask.nrrd", "traced.swc", "leaf.tif", "own.mask", "Labels.tif", "notes.txt",
+                             "tubes-mask.nhdr", "tubes-mask.raw", "tubes.nhdr", "brain_label.nii", "a-labels.mha"}) {
         folder.write(name, "12345");
         std::filesystem::last_write_time(folder.path / name, now - std::chrono::minutes(++age));
     }
@@ -26,7 +27,8 @@ TEST_CASE("annotation beside a scan is found by its names, the newest first, wit
         CHECK(file.path == folder.path / file.name);
         CHECK(file.about == "5 B");
     }
-    CHECK(names == std::vector<std::string>{"leaf-mask.nrrd", "traced.swc", "Labels.tif"});
+    CHECK(names == std::vector<std::string>{"leaf-mask.nrrd", "traced.swc", "Labels.tif", "tubes-mask.nhdr",
+                                            "brain_label.nii", "a-labels.mha"});
     CHECK(annotation_beside(folder.path / "gone", {}).empty());
 }
 
