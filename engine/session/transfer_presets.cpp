@@ -79,13 +79,23 @@ std::vector<TransferPreset> own_transfer_presets(const std::filesystem::path& fo
     return presets;
 }
 
+std::string why_no_name(const std::string& name, const char* kind)
+{
+    const bool is_blank = name.find_first_not_of(' ') == std::string::npos;
+    const char* const wrong = is_blank                              ? "is empty"
+                              : name[0] == '.'                      ? "begins with a dot"
+                              : name.find('/') != std::string::npos ? "has a /"
+                              : has_controls(name)                  ? "has characters that cannot be shown"
+                              : name.size() > MAX_NAME_BYTES        ? "is too long"
+                                                                    : nullptr;
+    if (!wrong) return {};
+    return sentence(in_quotes(name), " is no name for a ", kind, ", since it ", wrong, "; expected 1 to ",
+                    MAX_NAME_BYTES, " bytes without /, not beginning with a dot");
+}
+
 std::filesystem::path preset_file(const std::filesystem::path& folder, const std::string& name)
 {
-    const bool is_name = !name.empty() && name.size() <= MAX_NAME_BYTES && name[0] != '.' && !has_controls(name) &&
-                         name.find('/') == std::string::npos && name.find_first_not_of(' ') != std::string::npos;
-    if (!is_name)
-        fail("'", name, "' is no name for a transfer function; expected 1 to ", MAX_NAME_BYTES,
-             " bytes without /, not beginning with a dot");
+    if (const std::string why = why_no_name(name, "transfer function"); !why.empty()) fail(why);
     return folder / (name + ".json");
 }
 

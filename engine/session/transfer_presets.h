@@ -26,6 +26,8 @@ TransferPreset read_transfer_preset(const std::filesystem::path& file);
 TransferPreset preset_of(const TransferFunction& function, const std::string& name, const VolumeStatistics& statistics);
 /// Returns the JSON of a preset, which `parse_transfer_preset` reads.
 std::string text_of(const TransferPreset& preset);
+/// Returns why a name cannot be that of a kept transfer function or look (`kind`), whose file it names; empty: it can.
+std::string why_no_name(const std::string& name, const char* kind);
 /// Returns the path of a preset's file in a folder. Fails if the name cannot be a file name.
 std::filesystem::path preset_file(const std::filesystem::path& folder, const std::string& name);
 /// Returns the preset with this name. Fails with a list of the names if there is none.

@@ -119,7 +119,8 @@ std::vector<NamedLook> looks_in(const std::filesystem::path& folder, std::vector
 
 std::filesystem::path look_file(const std::filesystem::path& folder, const std::string& name)
 {
-    return preset_file(folder, name);
+    if (const std::string why = why_no_name(name, "look"); !why.empty()) fail(why);
+    return folder / (name + ".json");
 }
 
 }  // namespace shvr

@@ -1,6 +1,7 @@
 #pragma once
 // Actions on looks that the user keeps for all scans (engine/session/looks).
 
+#include "engine/session/transfer_presets.h"
 #include "engine/workbench/actions/action_row.h"
 
 namespace shvr::ui {
@@ -42,7 +43,8 @@ inline constexpr auto LOOK_ACTIONS = std::tuple{
         },
         [](const auto& model, const KeepLook& action) -> std::string {
             if (model.session.transfer_function.points().size() < 2) return "there is no transfer function";
-            return action.name.empty() == action.path.empty() ? "expected either a name or a file" : "";
+            if (action.name.empty() == action.path.empty()) return "expected either a name or a file";
+            return action.path.empty() ? why_no_name(action.name, "look") : "";
         }),
     row<TakeLook, LookShelf>(
         {"take_look", "Apply a look", LOOK_GROUP, "gives the scan groups, light and transfer function of a saved look"},

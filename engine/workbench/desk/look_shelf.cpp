@@ -4,6 +4,7 @@
 
 #include "engine/base/atomic_file.h"
 #include "engine/base/file.h"
+#include "engine/base/text.h"
 #include "engine/session/session_patch.h"
 
 namespace shvr::ui {
@@ -26,9 +27,10 @@ void LookShelf::load()
 void LookShelf::act(const KeepLook& action)
 {
     const bool is_for_all = action.path.empty();
-    const std::filesystem::path file = is_for_all ? look_file(folder(), action.name) : action.path;
+    const std::string kept(trimmed(action.name));  // "a" and "a " would read the same
+    const std::filesystem::path file = is_for_all ? look_file(folder(), kept) : action.path;
     if (!is_for_all && is_there(file)) fail(file.string(), ": exists already; expected a name that is free");
-    const std::string name = is_for_all ? action.name : file.stem().string();
+    const std::string name = is_for_all ? kept : file.stem().string();
     const std::string text = text_of(look_of(document_->session, name, document_->statistics));
     std::error_code error;
     if (is_for_all) std::filesystem::create_directories(file.parent_path(), error);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/base/atomic_file.h"
+#include "engine/base/text.h"
 
 namespace shvr::ui {
 
@@ -47,27 +48,29 @@ std::filesystem::path PresetShelf::free_file(const std::string& name) const
 
 void PresetShelf::act(const KeepPreset& action)
 {
-    const std::filesystem::path file = free_file(action.name);
-    const TransferPreset preset = preset_of(document_->session.transfer_function, action.name, document_->statistics);
+    const std::string name(trimmed(action.name));  // "a" and "a " would read the same
+    const std::filesystem::path file = free_file(name);
+    const TransferPreset preset = preset_of(document_->session.transfer_function, name, document_->statistics);
     const std::string text = text_of(preset);
     std::error_code error;
     std::filesystem::create_directories(file.parent_path(), error);
     if (error) fail(file.parent_path().string(), ": cannot be made: ", error.message());
     write_file_atomically(file, std::as_bytes(std::span(text)));
     load();
-    say("The transfer function is kept as " + action.name);
+    say("The transfer function is kept as " + name);
 }
 
 void PresetShelf::act(const RenamePreset& action)
 {
     static_cast<void>(own(action.name));
-    const std::filesystem::path from = preset_file(folder(), action.name), to = free_file(action.to);
+    const std::string name(trimmed(action.to));
+    const std::filesystem::path from = preset_file(folder(), action.name), to = free_file(name);
     std::error_code error;
-    if (std::filesystem::exists(to, error)) fail("'", action.to, "' is kept already; expected a name that is free");
+    if (std::filesystem::exists(to, error)) fail("'", name, "' is kept already; expected a name that is free");
     std::filesystem::rename(from, to, error);
     if (error) fail(from.string(), ": cannot be renamed: ", error.message());
     load();
-    say(sentence("The transfer function ", action.name, " is now called ", action.to));
+    say(sentence("The transfer function ", action.name, " is now called ", name));
 }
 
 void PresetShelf::act(const ForgetPreset& action)

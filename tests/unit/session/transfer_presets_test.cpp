@@ -142,4 +142,9 @@ TEST_CASE("names that are none of files are refused")
                                     std::string("  "), std::string(101, 'a')})
         CHECK_THROWS_AS(preset_file("/a", name), Error);
     CHECK_THROWS_AS(preset_of(TransferFunction(), "a", statistics()), Error);
+    CHECK(why_no_name("leaf, dark", "look").empty());
+    CHECK(
+        why_no_name("..", "look").starts_with("\"..\" is no name for a look, since it begins with a dot; expected 1"));
+    CHECK(why_no_name("a/b", "look").find("since it has a /;") != std::string::npos);
+    CHECK(why_no_name(std::string(200, 'a'), "look").find("since it is too long;") != std::string::npos);
 }

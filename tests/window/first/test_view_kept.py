@@ -87,7 +87,9 @@ class Kept(Seen):
         self.click_on("Looks", "##Menu_00")
         self.click_on("Save the look...", "##Menu_01")
         self.see("name of the look", "Save the look")
-        self.do("type", "--delay", 40, "mine", pause_s=0)
+        self.do("type", "--delay", 40, "a/b", pause_s=0)
+        self.see('"a/b" is no name for a look, since it has a /', "Save the look")
+        self.do("key", "ctrl+a", "type", "--delay", 40, "mine ", pause_s=0)   # the blank is left out
         self.see("It can then be applied to any scan", "Save the look")
         self.press("Return")
         look = self.configuration / "looks" / "mine.json"

@@ -5,6 +5,7 @@
 #include <imgui/imgui.h>
 #include <imgui/imgui_stdlib.h>
 
+#include "engine/base/text.h"
 #include "engine/workbench/actions/action_rows.h"
 #include "ui/panels/dialogs/field_widgets.h"
 #include "ui/panels/dialogs/file_chooser.h"
@@ -23,8 +24,8 @@ FileChooser to_file({.title = "Save the look in a file",
                      .note = "Look (.json), for other machines: Load annotation applies it.",
                      .wanted = FileChooser::Wanted::new_file});
 
-/// Draws the name, and what saving under it does. Returns whether Enter was pressed in it.
-bool look_name_row(std::string& name, const Model& model, const std::string& why)
+/// Draws the name. Returns whether Enter was pressed in it.
+bool look_name_row(std::string& name)
 {
     static FieldKeys keys;
     keys.before_field(ImGui::IsWindowAppearing());
@@ -32,22 +33,25 @@ bool look_name_row(std::string& name, const Model& model, const std::string& why
     const bool is_entered =
         ImGui::InputTextWithHint("##name", "name of the look", &name, ImGuiInputTextFlags_EnterReturnsTrue);
     keys.after_field();
-    const bool replaces = std::ranges::find(model.looks, name, &NamedLook::name) != model.looks.end();
-    ImGui::TextDisabled("%s", name.empty()   ? "Names and colours of groups, the light and the transfer function."
-                              : !why.empty() ? why.c_str()
-                              : replaces     ? "The look that has this name is replaced."
-                                             : "It can then be applied to any scan: View, Looks.");
     return is_entered;
 }
 
+/// Says what saving under the name does, or why that cannot be.
+void look_note(const KeepLook& keep, const Model& model, const std::string& why)
+{
+    if (keep.name.empty()) return dialog_note("Names and colours of groups, the light and the transfer function.", {});
+    const bool replaces = std::ranges::find(model.looks, keep.name, &NamedLook::name) != model.looks.end();
+    if (replaces) return dialog_note({}, why.empty() ? "The look that has this name is replaced." : why);
+    dialog_note("It can then be applied to any scan: View, Looks.", why);
+}
+
 /// Draws the buttons. Returns whether the dialog ends.
-bool ends_keeping(const std::string& name, bool is_entered, const std::string& why, const Model& model,
-                  Actions& actions)
+bool ends_keeping(const KeepLook& keep, bool is_entered, const std::string& why, const Model& model, Actions& actions)
 {
     ImGui::BeginDisabled(!why.empty());
     const bool is_confirmed = ImGui::Button("Save") || (is_entered && why.empty());
     ImGui::EndDisabled();
-    if (is_confirmed) actions.push_back(KeepLook{.name = name, .path = {}});
+    if (is_confirmed) actions.push_back(keep);
     ImGui::SameLine();
     const bool asks_for_file = ImGui::Button("In a file...");
     if (asks_for_file)
@@ -74,9 +78,11 @@ void keep_look_dialog(const Model& model, Actions& actions)
     ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
     bool is_over = true;
     if (ImGui::BeginPopupModal(KEEP_TITLE, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) {
-        const std::string why = why_not(model, KeepLook{.name = name, .path = {}});
-        const bool is_entered = look_name_row(name, model, why);
-        is_over = ends_keeping(name, is_entered, why, model, actions) || !is_wanted;
+        const bool is_entered = look_name_row(name);
+        const KeepLook keep{.name = std::string(trimmed(name)), .path = {}};
+        const std::string why = why_not(model, keep);
+        look_note(keep, model, why);
+        is_over = ends_keeping(keep, is_entered, why, model, actions) || !is_wanted;
         if (is_over) ImGui::CloseCurrentPopup();
         ImGui::EndPopup();
     }

@@ -140,5 +140,7 @@ TEST_CASE("looks of a folder are listed by name, without the broken ones, which 
     CHECK(warnings[0].find("c.json") != std::string::npos);
     CHECK(is_look(WHOLE, "l.json"));
     CHECK_FALSE(is_look(R"({"points": []})", "l.json"));
-    CHECK_THROWS_AS(static_cast<void>(look_file(folder.path, "a/b")), Error);
+    CHECK(look_file(folder.path, "mine") == folder.path / "mine.json");
+    CHECK(error_of([&] { static_cast<void>(look_file(folder.path, "a/b")); }).find("no name for a look") !=
+          std::string::npos);
 }
