@@ -69,6 +69,8 @@ class Writers(Seen):
         said = "\n".join(report["messages"])
         self.assertIn(f"read only, for it is open for writing in shvr annotate, process {holder.pid} on ", said)
         self.assertIn("session.json: is not saved, since it is open for writing", said)
+        self.assertIn(f"The scan is read only, since it is open for writing in shvr annotate, process {holder.pid} on ",
+                      said)
         self.assertEqual(sorted(report["voxels_in_group"]), ["3"])
         self.assertEqual(self.files(), before)
         _, errors = holder.communicate('{"op":"save"}\n', PATIENCE_S)

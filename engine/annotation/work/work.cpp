@@ -49,6 +49,7 @@ void Work::refuse_if_only_looking() const
 {
     if (!only_looks_) return;
     if (!claimed_.empty()) throw JournalTaken(claimed_);
+    if (!why_only_looks_.empty()) throw JournalTaken(why_only_looks_);
     throw JournalTaken(sentence(files_.journal.string(), ": is open to be looked at only",
                                 "; expected it open for writing, since this would change it"));
 }

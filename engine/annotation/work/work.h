@@ -65,7 +65,8 @@ public:
     struct Opening {
         Start start = Start::as_left;
         Belief belief = Belief::ask;
-        bool only_look = false;  ///< read-only: takes no hold, and accepts no command
+        bool only_look = false;       ///< read-only: takes no hold, and accepts no command
+        std::string why_only_look{};  ///< told to who tries to change the work; empty: a sentence about the journal
         /// States that the work will be changed at once: if others may still write the journal, opening takes it from
         /// them, rather than the first command. The journal is read again if they write to it meanwhile.
         bool takes_over = false;
@@ -93,6 +94,8 @@ public:
 
     /// True if commands and saves are refused.
     bool only_looks() const { return only_looks_; }
+    /// Fails with JournalTaken, which states why, if commands are refused.
+    void refuse_if_only_looking() const;
     /// Returns whether another process has claimed the journal since the last call, as noticed at the last write to the
     /// journal. After a claim this work is read-only; `claimed` states the reason and where its journal is kept.
     bool look_for_claim();
@@ -211,7 +214,6 @@ public:
 
 private:
     Document empty_document() const;
-    void refuse_if_only_looking() const;
 
     // Other writers
     void note_claim();
@@ -298,6 +300,7 @@ private:
     std::optional<FileDescriptor> scanned_;  ///< its file
     bool is_to_set_aside_ = false;           ///< the journal that was read belongs to other work
     bool only_looks_ = false;
+    std::string why_only_looks_;
     bool takes_files_ = false;  ///< the saved files are used, because the journal cannot be read
     bool is_fresh_ = false;     ///< started empty next to files of earlier work
     std::string program_;       ///< as in Holder

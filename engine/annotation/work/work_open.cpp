@@ -88,6 +88,7 @@ std::vector<Notice> Work::open(const WorkFiles& files, const Opening& opening)
     files_ = files;
     name_mask(files.mask);
     only_looks_ = opening.only_look;
+    why_only_looks_ = opening.why_only_look;
     opening_progress_ = opening.progress;
     program_ = opening.program;
     keeps_settings_ = !files.kept.empty();

@@ -56,7 +56,11 @@ Document::Read Document::read_remote(OpenedSession opened, const std::filesystem
               .overridden = overridden,
               .work = std::make_unique<Work>(volume.size, volume.type),
               .remote = address.string()};
-    read.notices = read.work->open(work_files(session, volume, overridden), {.only_look = true, .program = {}});
+    constexpr const char* FAR =
+        "The scan is read only, since it lies on another machine; Import as project, above the "
+        "picture, makes a copy that can be changed";
+    read.notices = read.work->open(work_files(session, volume, overridden),
+                                   {.only_look = true, .why_only_look = FAR, .program = {}});
     read.opened = std::move(opened);
     return read;
 }
@@ -81,6 +85,9 @@ Document::Read Document::read(OpenedSession opened, const std::filesystem::path&
     if (!may_write_outside) read.outside = files_outside(session, path, overridden);
     if (!read.outside.empty()) {
         opening.only_look = true;
+        opening.why_only_look =
+            sentence("The scan is read only, since its session writes outside its folder: ", read.outside,
+                     "; choose Write there or Work on a copy, above the picture");
         opening.hold.reset();
     }
     try {
@@ -89,6 +96,9 @@ Document::Read Document::read(OpenedSession opened, const std::filesystem::path&
         const std::optional<Holder> other = holder_of(files.journal);
         read.holder = other ? in_words(*other) : taken.what();
         opening.only_look = true;
+        opening.why_only_look = sentence("The scan is read only, since it is open for writing in ", read.holder,
+                                         "; close it there and choose Try again, or choose Work on a copy, above the "
+                                         "picture");
         opening.hold.reset();
         open_work(opening);
     }

@@ -55,6 +55,7 @@ void Painter::act(const Paint& action)
         if (action.on) others_.add_node_here();
         return;
     }
+    if (action.on) annotator.work().refuse_if_only_looking();
     if (action.on && !annotator.stroke_is_open()) {
         if (others_.has_settings_to_record() || document_->drags_node)
             await_strokes();  // in the history they come before
@@ -75,6 +76,7 @@ void Painter::act(const Paint& action)
 void Painter::act(const PaintOp& op)
 {
     Annotator& annotator = document_->annotator;
+    annotator.work().refuse_if_only_looking();
     const bool is_queued = annotator.stroke_is_running() && !annotator.stroke_is_open() && paints_later() &&
                            !others_.has_settings_to_record();
     if (annotator.stroke_is_running() && !is_queued) fail("a stroke is being painted; expected it to have ended");

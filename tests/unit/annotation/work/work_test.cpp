@@ -370,6 +370,10 @@ TEST_CASE("a second hand is told at opening who writes, and may look")
     CHECK_THROWS_AS(looking->perform(dab(2)), JournalTaken);
     CHECK_THROWS_AS(looking->undo(), JournalTaken);
     CHECK_THROWS_AS(looking->save(), JournalTaken);
+    CHECK_THROWS_AS(looking->refuse_if_only_looking(), JournalTaken);
+    CHECK_NOTHROW(first->refuse_if_only_looking());
+    const auto told = desk.open({.only_look = true, .why_only_look = "The scan is read only"});
+    CHECK(error_of([&] { told->perform(dab(2)); }) == "The scan is read only");
     REQUIRE(holder_of(desk.files().journal).has_value());
     CHECK(holder_of(desk.files().journal)->program == "the first");
     // The work that replaces the first takes over its hold.
