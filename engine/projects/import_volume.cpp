@@ -399,6 +399,15 @@ std::string remains_of(const fs::path& part)
     return sentence("; ", part.string(), " could not be removed: the same command replaces it, rm -r removes it");
 }
 
+/// What becomes of the remains of an import that was stopped or has failed, for its message.
+std::string use_of_remains(const ImportOptions& options, bool is_resumed)
+{
+    if (!options.tells_commands)
+        return is_resumed ? ", and can be resumed or deleted" : ", and is of no further use: delete it";
+    return is_resumed ? ", and the same command goes on from there; rm -r removes it"
+                      : ", and is of no further use; rm -r removes it";
+}
+
 /// Exports a label image; after a failure, removes all that was written.
 ImportReport import_all(const VolumeSource& labels, const fs::path& target, const ImportOptions& options)
 {
@@ -429,16 +438,15 @@ ImportReport import_volume(const VolumeSource& source, const fs::path& origin, c
     if (options.halving == Halving::label) check_labels(source.info(), options.preparation);
     const ImportPlan plan = plan_import(source, project, options);
     Import job(source, origin, project, options, plan);
-    const bool is_resumed = options.gaps == nullptr && !leads_to_network(origin);
-    const char* const goes_on = is_resumed ? ", and the same command goes on from there; rm -r removes it"
-                                           : ", and is of no further use; rm -r removes it";
-    const fs::path part = job.folder();
+    const std::string goes_on = use_of_remains(options, options.gaps == nullptr && !leads_to_network(origin));
+    const std::string part = job.folder().string();
     try {
         return job.run();
     } catch (const ImportStopped&) {
-        throw ImportStopped(sentence(job.folder().string(), ": the import was stopped; what is done is kept", goes_on));
+        const std::string stopped = options.tells_commands ? part + ": the import was stopped; " : "";
+        throw ImportStopped(stopped + "what is done is kept" + goes_on);
     } catch (const Error& error) {
-        fail(error.what(), "; what is done is kept in ", part.string(), goes_on);
+        fail(error.what(), "; what is done is kept", options.tells_commands ? " in " + part : "", goes_on);
     }
 }
 

@@ -82,6 +82,9 @@ struct ImportOptions {
     /// Collects what `source`, a GapSource, could not read; null: unreadable voxels end the import. The import reports
     /// gaps, and the project states them. An import with gaps is never resumed, since only the current run knows them.
     const Gaps* gaps = nullptr;
+    /// Whether messages about unfinished work say how to go on with it by commands. Otherwise they say that it can be
+    /// resumed or deleted, without naming its folder, for callers that offer both.
+    bool tells_commands = true;
 };
 
 struct ImportReport {

@@ -50,7 +50,7 @@ void delete_unfinished_import(const fs::path& project)
     PartFolder folder(project, true);
     folder.abandon();
     if (fs::exists(part, ignored))
-        fail(part.string(), ": could not be deleted; expected the right to: rm -r deletes it");
+        fail(part.string(), ": could not be deleted; expected the right to delete all files in it");
 }
 
 }  // namespace shvr

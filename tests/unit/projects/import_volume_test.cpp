@@ -459,6 +459,19 @@ TEST_CASE("an import whose progress is cancelled names the folder from which it 
                          "rm -r removes it");
 }
 
+TEST_CASE("a caller that offers to resume and to delete gets messages without commands")
+{
+    const Folder folder;
+    const MemorySource source = noise<uint16_t>({200, 200, 200}, VoxelType::uint16, 12);
+    const ImportOptions stopped{
+        .threads = 1, .progress = [](const ImportProgress&) { throw Stopped("cancelled"); }, .tells_commands = false};
+    CHECK(error_of([&] { folder.import(source, "project", stopped); }) ==
+          "what is done is kept, and can be resumed or deleted");
+    const Interrupted broken(source, 1, true);
+    CHECK(error_of([&] { folder.import(broken, "other", {.threads = 1, .tells_commands = false}); }) ==
+          "source: cannot be read: Input/output error; what is done is kept, and can be resumed or deleted");
+}
+
 TEST_CASE("an import that is asked to stop begins nothing more, wherever it is")
 {
     const Folder folder;
