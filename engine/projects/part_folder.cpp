@@ -132,15 +132,23 @@ bool is_target_taken(const fs::path& target)
     return is_there(plain_path(target)) && !is_empty_folder(plain_path(target));
 }
 
+FoundTarget found_at(const fs::path& target)
+{
+    if (!is_target_taken(target)) return {};
+    if (!is_zarr(target)) return {.is_taken = true};
+    return {.is_taken = true, .is_project = true, .foreign = entries_foreign_to_zarr(target)};
+}
+
 void check_target(const fs::path& target, bool overwrites)
 {
-    if (!is_target_taken(target)) return;
+    const FoundTarget found = found_at(target);
+    if (!found.is_taken) return;
     if (!overwrites) fail(target.string(), ": already exists; expected a new name, or --overwrite");
-    if (!is_zarr(target))
+    if (!found.is_project)
         fail(target.string(),
              ": is not a project; expected one, since --overwrite replaces nothing else: choose a new name");
-    if (const std::vector<std::string> foreign = entries_foreign_to_zarr(target); !foreign.empty())
-        fail(target.string(), ": holds ", in_words(foreign),
+    if (!found.foreign.empty())
+        fail(target.string(), ": holds ", in_words(found.foreign),
              ", no part of a project; expected nothing else there, since --overwrite removes the whole folder: move "
              "that, "
              "or choose a new name");

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "engine/base/file.h"
 
@@ -44,6 +45,14 @@ private:
     std::optional<FileDescriptor> lock_;
 };
 
+/// What is at the path of a folder that is to be made.
+struct FoundTarget {
+    bool is_taken = false;    ///< something other than an empty folder
+    bool is_project = false;  ///< a project or another Zarr folder, which may be replaced
+    /// Entries of other programs, which would be lost with the folder; at most MAX_FOREIGN_NAMES (foreign_content.h).
+    std::vector<std::string> foreign{};
+};
+FoundTarget found_at(const std::filesystem::path& target);
 /// Whether something other than an empty folder is at the path.
 bool is_target_taken(const std::filesystem::path& target);
 /// Fails if PartFolder would refuse a target with this path because of what is there.

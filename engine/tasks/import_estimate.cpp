@@ -1,8 +1,16 @@
 #include "engine/tasks/import_estimate.h"
 
+#include <algorithm>
+#include <initializer_list>
+
+#include "engine/annotation/writers/hold.h"
+#include "engine/base/text.h"
+#include "engine/projects/foreign_content.h"
 #include "engine/projects/import_prepare.h"
+#include "engine/projects/part_folder.h"
 #include "engine/session/session.h"
 #include "engine/tasks/file_content.h"
+#include "engine/tasks/task_output.h"
 #include "engine/volume/grid.h"
 
 namespace shvr {
@@ -10,16 +18,6 @@ namespace shvr {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The space that is free where the folder will be made; it and the folders around it may not exist yet.
-std::optional<double> free_space(fs::path folder)
-{
-    std::error_code error;
-    folder = fs::absolute(folder, error);
-    while (!error && !fs::exists(folder, error) && folder.has_relative_path()) folder = folder.parent_path();
-    const fs::space_info space = fs::space(folder, error);
-    return error ? std::nullopt : std::optional(double(space.available));
-}
 
 bool is_taken(const fs::path& path)
 {
@@ -31,6 +29,60 @@ fs::path free_name_beside(const fs::path& path)
 {
     for (int number = 2;; ++number)
         if (fs::path free = sentence(path.string(), '-', number); !is_taken(free)) return free;
+}
+
+/// Adds what a folder of a project has of one kind of annotation: "paint (labels/paint)".
+template <class Is>
+void add_kind(std::string& kinds, const char* kind, const fs::path& project, const char* folder, const Is& is)
+{
+    std::error_code ignored;
+    for (const fs::directory_entry& entry : fs::directory_iterator(project / folder, ignored))
+        if (is(entry)) {
+            kinds +=
+                sentence(kinds.empty() ? "" : ", ", kind, " (", folder, "/", entry.path().filename().string(), ")");
+            return;
+        }
+}
+
+/// Returns the annotation in a project's folder in words. Sessions that name files elsewhere are not followed.
+std::string annotation_in(const fs::path& project)
+{
+    const auto ends_in = [](const fs::directory_entry& entry, std::initializer_list<const char*> endings) {
+        const std::string ending = lower_case(entry.path().extension().string());
+        return std::ranges::find(endings, ending) != endings.end();
+    };
+    std::string kinds;
+    add_kind(kinds, "paint", project, "labels", [](const fs::directory_entry& entry) {
+        std::error_code ignored;
+        return entry.is_directory(ignored);
+    });
+    add_kind(kinds, "density offsets", project, "shvr", [&](const fs::directory_entry& entry) {
+        return ends_in(entry, {".zarr", ".offset"});
+    });
+    add_kind(kinds, "a trace", project, "shvr", [&](const fs::directory_entry& entry) {
+        return ends_in(entry, {".graphml", ".swc", ".rsml"});
+    });
+    add_kind(kinds, "the history of the work", project, "shvr",
+             [&](const fs::directory_entry& entry) { return ends_in(entry, {".journal"}); });
+    return kinds;
+}
+
+/// Returns why the project that is there cannot be replaced, in words for a dialog; empty: it can.
+std::string why_not_replaced(const ImportTask& task, const FoundTarget& found)
+{
+    constexpr const char* ANOTHER = "; expected a new name";
+    const std::string project = task.project.string();
+    std::error_code ignored;
+    if (!found.is_project)
+        return sentence(project,
+                        fs::is_directory(task.project, ignored) ? ": is a folder, but no project" : ": is a file",
+                        ANOTHER);
+    if (!found.foreign.empty())
+        return sentence(project, ": holds ", shvr::in_words(found.foreign), ", no part of it", ANOTHER);
+    if (!task.overwrite) return sentence(project, ": exists already", ANOTHER, ", or Overwrite under More");
+    if (const std::optional<Holder> holder = holder_of(journal_beside(task.project / "shvr" / "session.json")))
+        return sentence(project, ": is open for writing in ", in_words(*holder), "; expected it to be closed first");
+    return {};
 }
 
 /// Fails for a session file, which several commands take in place of a volume.
@@ -68,8 +120,25 @@ ImportEstimate estimate_of(const ImportTask& task)
                             .size = made.size,
                             .most_bytes = LEVELS * double(voxel_count(made)) * double(bytes_of(made.type)),
                             .free_bytes = free_space(task.project)};
-    if (is_taken(task.project)) estimate.free_name = free_name_beside(task.project);
     return estimate;
+}
+
+ImportPlace look_at_place(const ImportTask& task)
+{
+    ImportPlace place;
+    try {
+        check_new_folder(task.project);
+        const FoundTarget found = found_at(task.project);
+        if (is_taken(task.project)) place.free_name = free_name_beside(task.project);
+        if (!found.is_taken) return place;
+        place.is_project = found.is_project && found.foreign.empty();
+        if (place.is_project) place.annotation = annotation_in(task.project);
+        place.why_not = why_not_replaced(task, found);
+        if (place.why_not.empty()) refuse_own_source(task);
+    } catch (const Error& error) {
+        place.why_not = error.what();
+    }
+    return place;
 }
 
 }  // namespace shvr

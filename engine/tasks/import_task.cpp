@@ -33,21 +33,6 @@ void crop_fields(Fields& f, VoxelBox& crop)
     f.check("", glm::all(glm::lessThan(crop.lower, crop.upper)), "a lower corner that is below the upper one");
 }
 
-/// Refuses a project that is, or contains, the imported file, by any path: replacing the project would remove
-/// everything in it, including all annotations.
-void refuse_own_source(const ImportTask& task)
-{
-    std::error_code error;
-    std::filesystem::path path = std::filesystem::canonical(task.volume, error);
-    for (; !error; path = path.parent_path()) {
-        if (std::filesystem::equivalent(path, task.project, error))
-            fail(task.project.string(), ": holds the volume to import, ", task.volume.string(),
-                 "; expected another name for the new project, since --overwrite removes this one with its annotation");
-        if (path == path.parent_path()) return;
-        error.clear();  // no project exists there yet
-    }
-}
-
 /// Warns if the volume looks like annotation of a scan. Uses the project's statistics, so that no voxel is read again.
 void warn_of_labels(const ImportTask& task, const Gaps& gaps, ImportReport& report)
 {
@@ -144,6 +129,20 @@ void fields(Fields& f, ImportTask& task)
             {"memory that it may take, in MiB; 0: three quarters of what the process was given"});
 }
 
+void refuse_own_source(const ImportTask& task)
+{
+    std::error_code error;
+    std::filesystem::path path = std::filesystem::canonical(task.volume, error);
+    for (; !error; path = path.parent_path()) {
+        if (std::filesystem::equivalent(path, task.project, error))
+            fail(task.project.string(), ": holds the volume to import, ", task.volume.string(),
+                 "; expected another name for the new project, since ", option_name(task.names, "overwrite"),
+                 " removes this one with its annotation");
+        if (path == path.parent_path()) return;
+        error.clear();  // no project exists there yet
+    }
+}
+
 void check(const ImportTask& task)
 {
     const auto name = [&](const char* key) { return option_name(task.names, key); };
@@ -159,10 +158,9 @@ void check(const ImportTask& task)
     if (task.downscale < 1 || task.downscale > MAX_DOWNSCALE)
         throw UsageError(sentence(name("downscale"), " is ", task.downscale, "; expected 1 to ", MAX_DOWNSCALE));
     if (task.shards && task.version != OmeZarrVersion::v0_5)
-        throw UsageError(
-            task.names == OptionNames::command_line
-                ? "--shards is given without --ome-zarr 0.5; expected both, since OME-Zarr 0.4 has no shards"
-                : "shards is true without ome_zarr 0.5; expected both, since OME-Zarr 0.4 has no shards");
+        throw UsageError(sentence(name("shards"), task.names == OptionNames::command_line ? " is given" : " is true",
+                                  " without ", name("ome_zarr"),
+                                  " 0.5; expected both, since OME-Zarr 0.4 has no shards"));
     if (task.allows_incomplete && (task.reverse || task.blur_voxels != glm::dvec3(0.0) || task.downscale != 1))
         throw UsageError(sentence(name("allow_incomplete"), " is given with ",
                                   name(task.reverse          ? "reverse"
@@ -210,7 +208,8 @@ ImportOptions options_of(const ImportTask& task, ImportListener& listener, Progr
             .has_shards = task.shards,
             .progress = [&](const ImportProgress& progress) { listener.take(progress); },
             .cancel = &reporter.stop_requested(),
-            .gaps = task.allows_incomplete ? gaps : nullptr};
+            .gaps = task.allows_incomplete ? gaps : nullptr,
+            .tells_commands = task.names == OptionNames::command_line};
 }
 
 /// Opens the source of a task and calls `import`, which makes a report.

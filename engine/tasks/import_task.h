@@ -37,6 +37,9 @@ struct ImportResult {
 
 /// Refuses options that contradict each other. Reads no file.
 void check(const ImportTask& task);
+/// Refuses a project that is, or contains, the imported file, by any path: replacing the project would remove
+/// everything in it, including all annotations. Asks the disk.
+void refuse_own_source(const ImportTask& task);
 /// Keeps a replaced project until the new one is complete. Fails if another process is writing the project.
 ImportResult run(const ImportTask& task, ProgressReporter& reporter);
 

@@ -136,6 +136,13 @@ void fields(Fields& f, LabelTask& task)
     threads_field(f, task.threads);
 }
 
+std::vector<fs::path> replaced_files(const LabelTask& task)
+{
+    std::error_code ignored;
+    if (task.output.empty() || !fs::exists(task.output, ignored)) return {};
+    return {task.output};
+}
+
 void check(const LabelTask& task)
 {
     const auto name = [&](const char* key) { return option_name(task.names, key); };

@@ -31,6 +31,8 @@ struct LabelResult {
     std::vector<std::string> warnings;  ///< about voxels that could not be read
 };
 
+/// Returns the existing file or image that the task would replace. Asks the disk.
+std::vector<std::filesystem::path> replaced_files(const LabelTask& task);
 /// Checks options and names.
 void check(const LabelTask& task);
 /// Also checks whether `source` can be written in the format of the output: an OME-Zarr of a sparse volume needs only

@@ -24,10 +24,10 @@ std::set<uint8_t> stated_groups(const SurfaceTask& task)
         const size_t end = std::min(rest.find('+'), rest.size());
         const std::optional<int64_t> group = whole_of(rest.substr(0, end));
         if (!group || *group < 1 || *group > 255 || end + 1 == rest.size())
-            throw UsageError(
-                sentence(option_name(task.names, task.names == OptionNames::keys ? "surface_groups" : "surface"),
-                         " names the groups ", in_quotes(task.groups),
-                         "; expected numbers of groups, 1 to 255, as in 3 or 1+4"));
+            throw UsageError(sentence(
+                option_name(task.names, task.names == OptionNames::command_line ? "surface" : "surface_groups"),
+                " names the groups ", in_quotes(task.groups),
+                "; expected numbers of groups, 1 to 255, as in 3 or 1+4"));
         groups.insert(uint8_t(*group));
         rest.remove_prefix(std::min(end + 1, rest.size()));
     }

@@ -1,6 +1,8 @@
 #include "engine/tasks/task_options.h"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -10,14 +12,44 @@ namespace {
 
 constexpr int MAX_THREADS = 1024;
 
+/// Titles that are not just the words of the key. They fit into the left column of a dialog.
+constexpr std::pair<std::string_view, const char*> TITLES[] = {
+    {"allow_incomplete", "Skip unreadable"},
+    {"budget_host_mib", "Memory in MiB"},
+    {"decimate", "Triangles to keep"},
+    {"frame", "Time point"},
+    {"mesh", "Trace as tubes"},
+    {"metrics", "Measures"},
+    {"offset", "Density offsets"},
+    {"ome_zarr", "OME-Zarr version"},
+    {"raw", "Bare voxels"},
+    {"slack", "Tolerance"},
+    {"smooth", "Smooth surfaces"},
+    {"space", "Positions"},
+    {"truth_group", "Reference groups"},
+    {"truth_mask", "Reference mask"},
+    {"truth_trace", "Reference trace"},
+};
+
 }  // namespace
 
 std::string option_name(OptionNames names, std::string_view key)
 {
     if (names == OptionNames::keys) return std::string(key);
+    if (names == OptionNames::titles) return option_title(key);
     std::string name = "--" + std::string(key);
     std::ranges::replace(name, '_', '-');
     return name;
+}
+
+std::string option_title(std::string_view key)
+{
+    const auto known = std::ranges::find(TITLES, key, &std::pair<std::string_view, const char*>::first);
+    if (known != std::end(TITLES)) return known->second;
+    std::string title(key);
+    std::ranges::replace(title, '_', ' ');
+    if (!title.empty() && title[0] >= 'a' && title[0] <= 'z') title[0] = char(title[0] - 'a' + 'A');
+    return title;
 }
 
 void version_field(Fields& f, std::optional<OmeZarrVersion>& version, const char* automatic)

@@ -9,9 +9,12 @@
 
 namespace shvr {
 
-/// How messages refer to an option: by its JSON key ("break_loops") or by its command-line spelling ("--break-loops").
-enum class OptionNames { keys, command_line };
+/// How messages refer to an option: by its JSON key ("break_loops"), by its command-line spelling ("--break-loops"), or
+/// by its title in dialogs ("Break loops").
+enum class OptionNames { keys, command_line, titles };
 std::string option_name(OptionNames names, std::string_view key);
+/// Returns the title of an option, or of any other key, in dialogs.
+std::string option_title(std::string_view key);
 
 /// Reads options. `origin` names the text in messages; relative paths are relative to `folder`.
 template <class Task>

@@ -1,8 +1,11 @@
 #include "engine/tasks/task_output.h"
 
+#include <linux/magic.h>
+#include <sys/statfs.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <climits>
 #include <string_view>
 
 #include "engine/base/atomic_writer.h"
@@ -43,9 +46,17 @@ bool is_among_slices(const fs::path& folder, const fs::path& output)
     return false;
 }
 
-void expect_writable(const std::string& name, const std::filesystem::path& folder)
+/// Whether the kernel makes what is in the folder. To an administrator such folders look writable.
+bool is_of_kernel(const fs::path& folder)
 {
-    if (::access(folder.c_str(), W_OK | X_OK) != 0)
+    struct statfs status {};
+    return ::statfs(folder.c_str(), &status) == 0 &&
+           (status.f_type == PROC_SUPER_MAGIC || status.f_type == SYSFS_MAGIC);
+}
+
+void expect_writable(const std::string& name, const fs::path& folder)
+{
+    if (::access(folder.c_str(), W_OK | X_OK) != 0 || is_of_kernel(folder))
         fail(name, ": cannot be written: the folder ", folder.string(), " may not be written to");
 }
 
@@ -55,6 +66,51 @@ std::string why_no_folder(const fs::path& folder)
     std::error_code ignored;
     return fs::exists(folder, ignored) ? folder.string() + " is a file; expected a folder"
                                        : "there is no folder " + folder.string();
+}
+
+/// Bytes by which the name of an unfinished folder is longer than its own: ".NAME.shvr-part".
+constexpr size_t MAX_ADDED_BYTES = 16;
+
+/// Fails if the folder, which exists, cannot have an entry of this name. `added`: bytes that the name may grow by.
+void expect_short_name(const fs::path& name, const fs::path& folder, size_t added)
+{
+    const long limit = ::pathconf(folder.c_str(), _PC_NAME_MAX);
+    const size_t most = (limit > 0 ? size_t(limit) : size_t(NAME_MAX)) - added;
+    const size_t bytes = name.string().size();
+    if (bytes > most)
+        fail("the name ", in_quotes(name.string()), " is too long, with ", bytes, " bytes; expected at most ", most);
+}
+
+/// Fails if nothing can be made at the path. `added`: as above.
+void expect_place(const fs::path& path, size_t added)
+{
+    const std::string name = path.string();
+    const fs::path folder = fs::absolute(path).parent_path();
+    std::error_code ignored;
+    if (!fs::is_directory(folder, ignored)) fail(name, ": cannot be written: ", why_no_folder(folder));
+    expect_short_name(path.filename(), folder, added);
+    expect_writable(name, folder);
+}
+
+void expect_local(const fs::path& path)
+{
+    if (leads_to_network(path))
+        fail(path.string(),
+             ": cannot be written: nothing is written over a network; expected a folder on this machine");
+}
+
+fs::path without_slash(const fs::path& path)
+{
+    const fs::path whole = fs::absolute(path).lexically_normal();
+    return whole.has_filename() ? whole : whole.parent_path();
+}
+
+/// Returns the folder, or the nearest one around it, that exists.
+fs::path existing_part(fs::path folder)
+{
+    std::error_code ignored;
+    while (!fs::exists(folder, ignored) && folder.has_relative_path()) folder = folder.parent_path();
+    return folder;
 }
 
 }  // namespace
@@ -74,12 +130,9 @@ void check_output(const std::string& option, const std::filesystem::path& path,
 
 void check_output_place(const std::filesystem::path& path)
 {
-    const std::string name = path.string();
-    const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+    expect_place(path, 0);
     std::error_code ignored;
-    if (!std::filesystem::is_directory(folder, ignored)) fail(name, ": cannot be written: ", why_no_folder(folder));
-    expect_writable(name, folder);
-    if (std::filesystem::is_directory(path, ignored)) fail(name, ": is a folder; expected the name of a file");
+    if (fs::is_directory(path, ignored)) fail(path.string(), ": is a folder; expected the name of a file");
 }
 
 fs::path written_path(const fs::path& path)
@@ -112,15 +165,27 @@ void check_output_is_not(const fs::path& input, const fs::path& output)
 
 void check_output_folder(const std::filesystem::path& path)
 {
-    if (leads_to_network(path))
-        fail(path.string(),
-             ": cannot be written: nothing is written over a network; expected a folder on this machine");
-    std::filesystem::path folder = std::filesystem::absolute(path).lexically_normal();
+    expect_local(path);
+    const fs::path whole = without_slash(path), folder = existing_part(whole);
     std::error_code ignored;
-    while (!std::filesystem::exists(folder, ignored) && folder.has_relative_path()) folder = folder.parent_path();
-    if (!std::filesystem::is_directory(folder, ignored))
-        fail(path.string(), ": cannot be written: ", why_no_folder(folder));
+    if (!fs::is_directory(folder, ignored)) fail(path.string(), ": cannot be written: ", why_no_folder(folder));
+    for (const fs::path& name : whole.lexically_relative(folder)) expect_short_name(name, folder, MAX_ADDED_BYTES);
     expect_writable(path.string(), folder);
+}
+
+void check_new_folder(const fs::path& path)
+{
+    expect_local(path);
+    expect_place(without_slash(path), MAX_ADDED_BYTES);
+}
+
+std::optional<double> free_space(const fs::path& path)
+{
+    std::error_code error;
+    const fs::path whole = fs::absolute(path, error);
+    if (error) return std::nullopt;
+    const fs::space_info space = fs::space(existing_part(whole), error);
+    return error || space.capacity == 0 ? std::nullopt : std::optional(double(space.available));
 }
 
 }  // namespace shvr

@@ -1,13 +1,18 @@
-"""Exporting by its dialog, onto a disk that does not answer."""
+"""Exporting and importing by their dialogs, onto a disk that does not answer, and over what is there."""
 import unittest
 
 from harness import Volume
 from seen import Seen
 
-WINDOW = "Export annotation"
+WINDOW, IMPORT = "Export annotation", "Import as project"
 
 
 class Export(Seen):
+    def says(self, words, window):
+        """Waits for words that may be on several lines."""
+        self.until(lambda: words.replace(" ", "") in "".join(
+            seen["text"] for seen in self.seen(window=window)).replace(" ", ""), f"'{words}'")
+
     def test_a_dialog_waits_for_the_disk_in_words_and_the_window_goes_on(self):
         hung = self.folder / "hung"
         hung.mkdir()
@@ -97,10 +102,46 @@ class Export(Seen):
         self.press("Return")
         self.see_frames()
         self.see("Cancel", WINDOW)
+        self.do("key", "ctrl+a", "type", "--delay", 2, "x" * 300, pause_s=0)
+        self.says("is too long, with 310 bytes; expected at most 255", WINDOW)
+        self.press("Return")
+        self.see_frames()
+        self.see("Cancel", WINDOW)
         self.press("Escape")
         self.see_no_more("Cancel", WINDOW)
         report = self.finish()
         self.assertNotIn("nowhere", "\n".join(report["messages"]))
+
+    def test_an_import_over_a_project_names_the_annotation_that_is_lost_and_over_a_file_is_refused(self):
+        scan, project = self.folder / "scan.nrrd", self.folder / "plant"
+        scan.write_bytes(b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 8 8 8\nencoding: raw\n\n" + bytes(range(256)) * 2)
+        self.check("import", scan, project, "--quiet")
+        self.check("annotate", project, "--script", self.write_script("s.jsonl", [
+            {"op": "paint", "brush": "fill", "region": "ball", "path": [[4, 4, 4]], "radius": 2, "threshold": 0,
+             "group": 1}, {"op": "save"}]))
+        self.view(preferences={"hints_seen": 3})
+        self.see("Open the example")
+        self.press("Ctrl+I")
+        self.see("Cancel", IMPORT)
+        self.type_into("Scan", scan, IMPORT)
+        self.type_into("Project", project, IMPORT)
+        self.says("plant: exists already; expected a new name, or Overwrite under More", IMPORT)
+        self.click_on("More", IMPORT)
+        # The box to tick begins nine letters' heights right of the row's name.
+        x0, y0, _, y1 = self.see_at_rest("Overwrite", IMPORT)["box"]
+        self.do("mousemove", x0 + 9 * 14 + 8, round((y0 + y1) / 2), "sleep", 0.1, "mousedown", 1, "sleep", 0.1,
+                "mouseup", 1, pause_s=0.2)
+        self.says("plant exists and will be deleted, with its annotation: paint (labels/paint)", IMPORT)
+        self.says("The scan has 8 x 8 x 8 voxels", IMPORT)   # still
+        self.type_into("Project", scan, IMPORT)
+        self.says("scan.nrrd: is a file; expected a new name", IMPORT)
+        self.press("Return")
+        self.see_frames()
+        self.see("Cancel", IMPORT)
+        self.press("Escape")
+        self.see_no_more("", IMPORT)
+        self.finish()
+        self.assertTrue((project / "labels" / "paint").is_dir())
 
     def test_an_import_takes_at_most_the_memory_of_the_preferences(self):
         scan = self.folder / "scan.nrrd"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <map>
@@ -45,12 +46,18 @@ struct EarlyCharacters {
 };
 EarlyCharacters early;
 
+constexpr double MAX_WHOLE = 9223372036854775807.0;  ///< 2^63: int64_t ends below
+
 std::string words_of_refusal(const Refusal& refusal)
 {
     const std::string found =
         trimmed(refusal.text).empty() ? std::string("a field is empty") : in_quotes(refusal.text) + " is not a number";
     if (!refusal.is_whole) return found + "; expected a number such as 1.5 or 1,5";
-    if (typed_number(refusal.text)) return in_quotes(refusal.text) + " is not a whole number; expected one such as 12";
+    if (const std::optional<double> number = typed_number(refusal.text)) {
+        const bool is_whole = std::floor(*number) == *number && std::abs(*number) >= MAX_WHOLE;
+        return in_quotes(refusal.text) + (is_whole ? " is too large; expected a smaller number"
+                                                   : " is not a whole number; expected one such as 12");
+    }
     return found + "; expected a whole number such as 12";
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/tasks/export_task.h"
+#include "engine/workbench/forms/disk_space.h"
 #include "engine/workbench/models/model.h"
 
 namespace shvr::ui {
@@ -17,8 +18,8 @@ struct ExportForm {
     };
     std::string base;  ///< folder and beginning of all names, as typed: "/scans/leaf"
     Part mask{false, ".nrrd"}, trace{false, ".graphml"}, measures{false, ".csv"}, surfaces{false, ".ply"};
-    Part measurements{false, ".csv"};  ///< distances, paths and angles; without a row where there are none
-    ExportTask more;                   ///< options under More
+    Part measurements{false, ".csv"};               ///< distances, paths and angles; without a row where there are none
+    ExportTask more{.names = OptionNames::titles};  ///< options under More
 };
 
 /// One row of the dialog.
@@ -40,6 +41,8 @@ ExportForm suggested_export(const Model& model, const ExportForm& last);
 ExportTask task_of(const ExportForm& form, const std::filesystem::path& folder);
 /// The number of files that surfaces are written to: one, or one for each group.
 int64_t files_of_surfaces(const ExportForm& form, const Model& model);
+/// What the files of the rows take together.
+BytesNeeded bytes_written(const ExportForm& form, const Model& model);
 /// Options of the task that the rows cover, so that More leaves them out.
 inline constexpr std::string_view EXPORT_ROWS_COVER[]{"mask", "trace", "metrics", "surface", "measurements"};
 

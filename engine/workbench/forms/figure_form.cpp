@@ -97,7 +97,7 @@ FigureTask task_of(const FigureForm& form, const std::filesystem::path& folder)
 {
     FigureTask task = form.more;
     task.elements = elements_of(form.elements);
-    task.path = placed(form.path, folder);
+    task.path = placed_new(form.path, folder);
     task.pixels = pixels_of(form.size);
     task.dots_per_inch = form.size.is_in_mm ? form.size.dots_per_inch : 0.0;
     return task;

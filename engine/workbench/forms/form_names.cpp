@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "engine/base/text.h"
+
 namespace shvr::ui {
 
 namespace fs = std::filesystem;
@@ -35,13 +37,9 @@ fs::path placed(const std::string& typed, const fs::path& folder)
     return path.is_absolute() || folder.empty() ? path : (folder / path).lexically_normal();
 }
 
-std::string title_of_key(std::string_view key)
+fs::path placed_new(const std::string& typed, const fs::path& folder)
 {
-    std::string title(key);
-    std::ranges::replace(title, '_', ' ');
-    if (title.starts_with("ome zarr")) title.replace(0, 8, "OME-Zarr");
-    if (!title.empty() && title[0] >= 'a' && title[0] <= 'z') title[0] = char(title[0] - 'a' + 'A');
-    return title;
+    return placed(std::string(trimmed(typed)), folder);
 }
 
 std::string bytes_in_words(double bytes)

@@ -1,10 +1,9 @@
 #pragma once
-// Names that dialogs suggest for new files, labels of keys, and sizes of files in words. Pure; any thread.
+// Names that dialogs suggest for new files, and sizes of files in words. Pure; any thread.
 
 #include <cstdint>
 #include <filesystem>
 #include <string>
-#include <string_view>
 
 #include "engine/workbench/models/model.h"
 
@@ -17,9 +16,8 @@ std::filesystem::path stem_of(std::filesystem::path path);
 std::filesystem::path base_of(const Model& model);
 /// Returns the path that a typed name means: relative names lie in `folder`, and "~" is the home folder.
 std::filesystem::path placed(const std::string& typed, const std::filesystem::path& folder);
-
-/// Returns the label of a key: "Break loops" for "break_loops".
-std::string title_of_key(std::string_view key);
+/// The same for a file or folder that is to be made: blanks before and behind the name are left out.
+std::filesystem::path placed_new(const std::string& typed, const std::filesystem::path& folder);
 
 /// Returns "1.4 GB": 1000 bytes are 1 kB.
 std::string bytes_in_words(double bytes);

@@ -3,16 +3,18 @@
 
 #include <string>
 
+#include "engine/tasks/import_estimate.h"
 #include "engine/tasks/import_task.h"
+#include "engine/workbench/forms/disk_space.h"
 #include "engine/workbench/models/model.h"
 
 namespace shvr::ui {
 
 struct ImportForm {
-    std::string volume, project;  ///< as typed
-    std::string suggested;        ///< the project that was suggested; one that was typed is kept
-    std::string voxel_size;       ///< as typed (voxel_size.h); empty: the file's
-    ImportTask more;              ///< all other options; those of the rows too
+    std::string volume, project;                    ///< as typed
+    std::string suggested;                          ///< the project that was suggested; one that was typed is kept
+    std::string voxel_size;                         ///< as typed (voxel_size.h); empty: the file's
+    ImportTask more{.names = OptionNames::titles};  ///< all other options; those of the rows too
 };
 
 /// Returns a form for that scan, or for the open scan if the path is empty.
@@ -23,6 +25,13 @@ void follow_volume(ImportForm& form);
 std::filesystem::path project_for(const std::filesystem::path& volume);
 /// Returns why the form cannot be carried out; empty: it can.
 std::string why_not(const ImportForm& form);
+/// Returns what happens to the project that an import replaces: "leaf exists and will be deleted ..."; empty: none is.
+std::string words_of_replacement(const ImportTask& task, const ImportPlace& place);
+/// Returns that a project of the open scan begins without the scan's annotation, and how that is loaded; empty: another
+/// scan is imported, or there is no annotation.
+std::string words_of_annotation(const ImportForm& form, const Model& model);
+/// What an import writes of a scan, at least: a project of nothing but background. At most: without compression.
+BytesNeeded bytes_written(const ImportEstimate& estimate);
 /// `folder`: where relative names lie.
 ImportTask task_of(const ImportForm& form, const std::filesystem::path& folder);
 inline constexpr std::string_view IMPORT_ROWS_COVER[]{"volume", "project", "spacing", "unit", "downscale"};

@@ -51,7 +51,7 @@ MovieForm suggested_movie(const Model& model, const MovieForm& last)
 void choose_kind(MovieForm& form, MovieKind kind)
 {
     form.kind = kind;
-    std::filesystem::path path = form.path;
+    std::filesystem::path path = trimmed(form.path);
     if (is_movie_file(path)) path.replace_extension();
     form.path = path.string() + ending_of(kind);
 }
@@ -73,7 +73,7 @@ std::string why_not(const MovieForm& form)
 MovieTask task_of(const MovieForm& form, const std::filesystem::path& folder)
 {
     MovieTask task = form.more;
-    task.path = placed(form.path, folder);
+    task.path = placed_new(form.path, folder);
     if (form.kind != MovieKind::frames && !is_movie_file(task.path)) task.path += ending_of(form.kind);
     task.elements = elements_of(form.elements);
     task.views.clear();

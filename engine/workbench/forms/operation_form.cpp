@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "engine/base/text.h"
-#include "engine/workbench/forms/form_names.h"
+#include "engine/tasks/task_options.h"
 
 namespace shvr::ui {
 
@@ -27,7 +27,7 @@ std::string with_label(const std::string& refusal)
     const std::string key = refusal.substr(KEY.size(), is - KEY.size());
     const std::string found = refusal.substr(is + IS.size(), expected - is - IS.size());
     const std::optional<double> number = number_of(found);
-    return title_of_key(key) + std::string(IS) +
+    return option_title(key) + std::string(IS) +
            (found == "missing" ? "empty"
             : number           ? plain_digits_of(*number)
                                : found) +

@@ -6,6 +6,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
+#include "engine/volume/unit.h"
 
 namespace shvr::ui {
 
@@ -57,7 +58,7 @@ std::optional<VoxelSize> read_size(const std::string& text)
     }
     if (sides.size() != 1 && sides.size() != 3) return std::nullopt;
     size.spacing = sides.size() == 1 ? glm::dvec3(sides[0]) : glm::dvec3(sides[0], sides[1], sides[2]);
-    if (size.unit == "\u00b5m" || size.unit == "\u03bcm") size.unit = "um";
+    size.unit = plain_unit(size.unit);
     return size;
 }
 
@@ -68,6 +69,20 @@ std::optional<VoxelSize> voxel_size_of(const std::string& text)
     const std::optional<VoxelSize> size = read_size(with_decimal_points(text));
     // One comma, as in "1 2,5", may be either, so that it is refused.
     return size || std::ranges::count(text, ',') != 2 ? size : read_size(text);
+}
+
+std::string why_no_voxel_size(const std::string& text, const std::string& unit)
+{
+    const std::optional<VoxelSize> size = voxel_size_of(text);
+    if (!size) return EXPECTED_VOXEL_SIZE;
+    for (int axis = 0; axis < 3; ++axis)
+        if (const double side = size->spacing[axis]; !(side >= MIN_SPACING && side <= MAX_SPACING))
+            return sentence("the size ", digits_of(side), " is out of range; expected ", MIN_SPACING, " to ",
+                            MAX_SPACING);
+    const bool is_known =
+        size->unit.empty() || size->unit == unit || size->unit == "voxel" || micrometres_in(size->unit).has_value();
+    if (is_known) return {};
+    return sentence("the unit ", in_quotes(size->unit), " is not known here; expected um, mm, nm, pm, cm, m or inch");
 }
 
 std::string text_of(const VoxelSize& size)

@@ -18,6 +18,9 @@ struct VoxelSize {
 std::optional<VoxelSize> voxel_size_of(const std::string& text);
 /// Returns "0.8 x 0.8 x 1.2 um", which voxel_size_of reads as the same size.
 std::string text_of(const VoxelSize& size);
+/// Returns why a typed size cannot be that of a voxel, in a sentence; empty: it can. `unit`: the unit that the volume
+/// has, which need not be known. Other units must be lengths.
+std::string why_no_voxel_size(const std::string& text, const std::string& unit = {});
 /// What a text that states no size is told.
 inline constexpr const char* EXPECTED_VOXEL_SIZE = "expected the size of a voxel, as in 0.8 x 0.8 x 1.2 um";
 

@@ -204,6 +204,11 @@ TEST_CASE("names and folders are refused before anything is written, in the word
         CHECK(contains(refusal(task), "taken is a file; expected a folder"));
     }
     task = task_in(folder.path);
+    task.mask = folder.path / (std::string(300, 'x') + ".mask");
+    CHECK(contains(refusal(task), "is too long, with 305 bytes; expected at most "));
+    task.mask = folder.path / (std::string(300, 'x') + ".zarr");
+    CHECK(contains(refusal(task), "is too long, with 305 bytes; expected at most "));
+    task = task_in(folder.path);
     task.labels = true;
     CHECK(contains(refusal(task), "is no project folder; expected one, to write --labels into, or --mask with a name"));
     task.labels = false;

@@ -206,14 +206,141 @@ TEST_CASE("what an import would make is told from the scan's header, with a free
     CHECK(estimate.size == Size3(10, 8, 6));
     CHECK(estimate.most_bytes == doctest::Approx(960.0 * 8.0 / 7.0));
     CHECK(estimate.free_bytes.value_or(0.0) > 0.0);
-    CHECK(estimate.free_name.empty());
+    CHECK(bytes_written(estimate).most >= estimate.most_bytes);
+    CHECK(bytes_written(estimate).least > 0.0);
+    CHECK(look_at_place(task).free_name.empty());
     task.downscale = 2;
     CHECK(estimate_of(task).size == Size3(5, 4, 3));
     std::filesystem::create_directory(task.project);
     std::filesystem::create_directory(folder.path / "scan-project-2");
-    CHECK(estimate_of(task).free_name == folder.path / "scan-project-3");
+    CHECK(look_at_place(task).free_name == folder.path / "scan-project-3");
+    CHECK(look_at_place(task).why_not.empty());  // an empty folder counts as absent
     task.volume = folder.path / "gone.nrrd";
     CHECK(error_of([&] { static_cast<void>(estimate_of(task)); }).find("gone.nrrd") != std::string::npos);
+}
+
+TEST_CASE("an import says what it replaces, and names the annotation that is lost with it")
+{
+    const TemporaryFolder folder;
+    ImportTask task{.volume = folder.path / "scan.nrrd", .project = folder.path / "plant", .overwrite = true};
+    CHECK(words_of_replacement(task, look_at_place(task)).empty());
+    std::filesystem::create_directories(task.project / "shvr");
+    folder.write("plant/.zattrs", "{}");
+    CHECK(words_of_replacement(task, look_at_place(task)) ==
+          "plant exists and will be replaced. It holds no annotation.");
+    std::filesystem::create_directories(task.project / "labels" / "paint");
+    folder.write("plant/labels/.zgroup", "{}");
+    folder.write("plant/shvr/paint.graphml", "");
+    folder.write("plant/shvr/session.json", "{}");
+    CHECK(words_of_replacement(task, look_at_place(task)) ==
+          "plant exists and will be deleted, with its annotation: paint (labels/paint), a trace (shvr/paint.graphml). "
+          "Undo does not bring that back.");
+    task.overwrite = false;
+    const ImportPlace kept = look_at_place(task);
+    CHECK(words_of_replacement(task, kept).empty());
+    CHECK(kept.why_not == task.project.string() + ": exists already; expected a new name, or Overwrite under More");
+    CHECK(kept.free_name == folder.path / "plant-2");
+}
+
+TEST_CASE("an import offers to overwrite nothing but projects, and says at once where none can be made")
+{
+    const TemporaryFolder folder;
+    const auto why = [&](const char* name, bool overwrites) {
+        const ImportTask task{
+            .volume = folder.path / "scan.nrrd", .project = folder.path / name, .overwrite = overwrites};
+        return look_at_place(task).why_not;
+    };
+    folder.write("notes.txt", "mine");
+    std::filesystem::create_directory(folder.path / "thesis");
+    folder.write("thesis/text.txt", "mine");
+    std::filesystem::create_directory(folder.path / "mixed");
+    folder.write("mixed/.zattrs", "{}");
+    folder.write("mixed/text.txt", "mine");
+    for (const bool overwrites : {false, true}) {
+        CHECK(why("notes.txt", overwrites).ends_with("notes.txt: is a file; expected a new name"));
+        CHECK(why("thesis", overwrites).ends_with("thesis: is a folder, but no project; expected a new name"));
+        CHECK(why("mixed", overwrites).ends_with("mixed: holds text.txt, no part of it; expected a new name"));
+    }
+    CHECK(why("none/project", false).find("there is no folder") != std::string::npos);
+    CHECK(why(std::string(300, 'x').c_str(), false).find("is too long, with 300 bytes") != std::string::npos);
+    CHECK(look_at_place({.volume = "scan.nrrd", .project = "/proc/q"}).why_not.find("may not be written to") !=
+          std::string::npos);
+}
+
+TEST_CASE("a project of an annotated scan begins without annotation, and it is said how that is loaded")
+{
+    Scanned world;
+    world.session.mask_path = "/scans/leaf.mask";
+    world.session.trace_path = "/scans/leaf.graphml";
+    ImportForm form = suggested_import(world.model, {});
+    CHECK(words_of_annotation(form, world.model).empty());
+    world.model.voxels_by_group[3] = 7;
+    CHECK(words_of_annotation(form, world.model) ==
+          "The project begins without the annotation of this scan, which stays with the scan. Load annotation brings "
+          "it into the project, from leaf.mask.");
+    world.add_node({1.0, 2.0, 3.0});
+    CHECK(words_of_annotation(form, world.model).ends_with("from leaf.mask and leaf.graphml."));
+    form.more.downscale = 2;
+    CHECK(words_of_annotation(form, world.model).ends_with("it fits the whole scan alone."));
+    form.volume = "/scans/other.tif";
+    CHECK(words_of_annotation(form, world.model).empty());
+}
+
+TEST_CASE("too little space is refused where that is certain, and told where it is possible")
+{
+    CHECK(words_of_space({100.0, 200.0}, std::nullopt).warning.empty());
+    CHECK(words_of_space({100.0, 200.0}, 200.0).warning.empty());
+    const SpaceWords possible = words_of_space({100.0, 200e3}, 66e3);
+    CHECK(possible.refusal.empty());
+    CHECK(possible.warning == "This may take up to 200 kB, and only 66 kB are free on that disk.");
+    const SpaceWords certain = words_of_space({4.1e6, 4.2e6}, 0.0);
+    CHECK(certain.warning.empty());
+    CHECK(certain.refusal ==
+          "This takes at least 4.1 MB, and 0 bytes are free on that disk: free some space, or choose another folder.");
+    Scanned world;
+    world.model.voxels_by_group[3] = 7;
+    world.add_node({1.0, 2.0, 3.0});
+    ExportForm form = suggested_export(world.model, {});
+    const BytesNeeded plain = bytes_written(form, world.model);
+    CHECK(plain.least == 32768.0);  // one byte for each of 64 x 32 x 16 voxels
+    CHECK(plain.most > plain.least);
+    form.mask.ending = ".zarr";
+    CHECK(bytes_written(form, world.model).least == 0.0);
+    CHECK(bytes_written(form, world.model).most == plain.most);
+    LabelForm label = suggested_label(world.model);
+    CHECK(bytes_written(label, world.model).most == 0.0);  // it only counts
+    label.writes_labels = true;
+    CHECK(bytes_written(label, world.model).most == 4.0 * 32768.0);
+    CHECK(bytes_written(label, world.model).least == 0.0);
+    label.output = "/scans/parts.mask";
+    CHECK(bytes_written(label, world.model).least == 32768.0);
+}
+
+TEST_CASE("blanks around the name of a new file are left out")
+{
+    Scanned world;
+    ExportForm exported = suggested_export(world.model, {});
+    exported.base = " a ";
+    CHECK(task_of(exported, "/scans").mask == "/scans/a-mask.nrrd");
+    CHECK(rows_of(exported, world.model)[0].file == "a-mask.nrrd");
+    CHECK(task_of(ImportForm{.volume = "/scans/leaf.tif", .project = "p "}, "/scans").project == "/scans/p");
+    CHECK(task_of(LabelForm{.writes_labels = true, .output = " parts.zarr "}, "/scans").output == "/scans/parts.zarr");
+    CHECK(task_of(FigureForm{.path = "f.png "}, "/scans").path == "/scans/f.png");
+    MovieForm movie{.path = "m ", .kind = MovieKind::webm};
+    CHECK(task_of(movie, "/scans").path == "/scans/m.webm");
+    choose_kind(movie, MovieKind::mp4);
+    CHECK(movie.path == "m.mp4");
+    CHECK(why_not(ImportForm{.volume = "/a/b.tif", .project = "  "}).starts_with("name the folder"));
+}
+
+TEST_CASE("options have titles in the dialogs' messages, not keys")
+{
+    CHECK(option_title("budget_host_mib") == "Memory in MiB");
+    CHECK(option_title("break_loops") == "Break loops");
+    ImportForm form{.volume = "/a/b.tif", .project = "/a/p"};
+    form.more.allows_incomplete = true;
+    form.more.reverse = true;
+    CHECK(error_of([&] { check(task_of(form, "/a")); }).starts_with("Skip unreadable is given with Reverse"));
 }
 
 TEST_CASE("labelling counts at the paint threshold, and writes where it is asked to")
@@ -228,6 +355,12 @@ TEST_CASE("labelling counts at the paint threshold, and writes where it is asked
     CHECK(size_of_labels(form, world.model) == "at most 131 kB");
     form.more.largest = 10;
     CHECK(size_of_labels(form, world.model) == "at most 33 kB");
+    CHECK(why_not(form).empty());
+    form.more.fewest_voxels = -5;
+    CHECK(why_not(form) == "the smallest part has -5 voxels; expected 1 or more");
+    form.more.fewest_voxels = 1;
+    form.output = " ";
+    CHECK(why_not(form) == "name the file of the labels");
 }
 
 TEST_CASE("the size of a voxel is typed in one line, with one number or three and the unit")
@@ -252,7 +385,15 @@ TEST_CASE("the size of a voxel is typed in one line, with one number or three an
         CAPTURE(wrong);
         CHECK(read(wrong) == "none");
     }
-    ImportForm form{.volume = "/a/b.tif", .project = "/a/p", .voxel_size = "0.1 um"};
+    CHECK(read("5 Micrometers") == "5 x 5 x 5 um");
+    for (const char* right : {"2", "0.8 x 0.8 x 1.2 um", "4 inch", "1 voxel"}) CHECK(why_no_voxel_size(right).empty());
+    CHECK(why_no_voxel_size("5 parsec").starts_with("the unit \"parsec\" is not known here; expected um, mm"));
+    CHECK(why_no_voxel_size("5 parsec", "parsec").empty());  // the file states it
+    CHECK(why_no_voxel_size("1e-300 um") == "the size 1e-300 is out of range; expected 1e-12 to 1e+12");
+    CHECK(why_no_voxel_size("1 2") == EXPECTED_VOXEL_SIZE);
+    ImportForm form{.volume = "/a/b.tif", .project = "/a/p", .voxel_size = "5 parsec"};
+    CHECK(why_not(form).starts_with("the unit \"parsec\""));
+    form.voxel_size = "0.1 um";
     CHECK(why_not(form).empty());
     CHECK(task_of(form, "").choice.spacing == glm::dvec3(0.1));
     CHECK(task_of(form, "").choice.unit == "um");

@@ -68,6 +68,27 @@ class Numbers(Operating):
         self.until(lambda: self.previewed()["box"] == [15, *box[1:]], "the box from 15 on")
         self.finish()
 
+    def test_a_smallest_part_is_a_whole_number_from_one_on(self):
+        window = "Label connected parts"
+        self.open_scan(self.write_ball(), preferences={"hints_seen": 3})
+        self.click_on("File", "##MainMenuBar")
+        self.click_on("Label connected parts...", "##Menu_00")
+        self.see("Counts the parts; nothing is written.", window)
+        self.type_into("Smallest part", "9999999999999999999", window)
+        self.see('"9999999999999999999" is too large; expected a smaller number', window)
+        self.type_into("Smallest part", "-5", window)
+        self.see("the smallest part has -5 voxels; expected 1 or more", window)
+        self.press("Return")
+        self.see_frames()
+        self.see("Cancel", window)
+        self.type_into("Smallest part", "5", window)
+        self.see("Counts the parts; nothing is written.", window)
+        self.press("Return")
+        self.see_no_more("", window)
+        self.see("Found ", "Status")
+        self.assertEqual([line["min_voxels"] for line in self.done() if line["op"] == "label"], [5])
+        self.finish()
+
     def settings(self):
         return [line["values"] for line in self.done() if line["op"] == "set"]
 

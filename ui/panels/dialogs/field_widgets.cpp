@@ -8,7 +8,7 @@
 #include <imgui/imgui_stdlib.h>
 
 #include "engine/base/text.h"
-#include "engine/workbench/forms/form_names.h"
+#include "engine/tasks/task_options.h"
 #include "ui/files/file_list.h"
 #include "ui/panels/dialogs/file_chooser.h"
 #include "ui/panels/field_keys.h"
@@ -35,7 +35,7 @@ constexpr float MIN_DIALOG = 18.0f;  ///< width of the narrowest dialog, in font
 /// Draws the name at the left. Returns the label for the next widget: an id without visible text.
 std::string begin_row(std::string_view name)
 {
-    const std::string title = title_of_key(name);
+    const std::string title = option_title(name);
     const bool is_beside = ImGui::GetContentRegionAvail().x >= (NAME_COLUMN + MIN_BESIDE) * ImGui::GetFontSize();
     if (is_beside) ImGui::AlignTextToFramePadding();
     if (is_beside || !title.empty()) ImGui::TextUnformatted(title.c_str());

@@ -102,14 +102,14 @@ int put_cursor_behind(ImGuiInputTextCallbackData* data)
     return 0;
 }
 
-/// Draws the size of a voxel, and why what is typed is none. Returns whether it was changed to another size.
+/// Draws the size of a voxel. Returns whether it was changed to another size.
 bool spacing_field(std::string& text, glm::dvec3& spacing, std::string& unit)
 {
     constexpr ImGuiInputTextFlags FLAGS = ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_CallbackAlways;
     const bool is_changed = ImGui::InputText("size of a voxel", &text, FLAGS, put_cursor_behind);
     hint("As in 0.8 x 0.8 x 1.2 um, or 4 um. Without a unit, that stays as it is.");
     const std::optional<VoxelSize> size = voxel_size_of(text);
-    if (!is_changed || !size) return false;
+    if (!is_changed || !size || !why_no_voxel_size(text).empty()) return false;
     spacing = size->spacing;
     if (!size->unit.empty()) unit = size->unit;
     return true;
@@ -195,12 +195,10 @@ void load_dialog(const Model& model, Actions& actions)
     }
     is_changed |= ImGui::Checkbox("State the spacing", &form.states_spacing);
     hint("Replaces the spacing in the file, or supplies a missing one.");
-    if (form.states_spacing) {
-        is_changed |= spacing_field(loading.spacing_text, form.spacing, form.unit);
-        if (!voxel_size_of(loading.spacing_text)) dialog_note("", EXPECTED_VOXEL_SIZE);
-    }
+    if (form.states_spacing) is_changed |= spacing_field(loading.spacing_text, form.spacing, form.unit);
     ImGui::PopItemWidth();
-    const std::string wrong = refused_number();
+    std::string wrong = refused_number();
+    if (wrong.empty() && form.states_spacing) wrong = why_no_voxel_size(loading.spacing_text);
     if (!wrong.empty()) dialog_note("", wrong);
     const std::string settings = settings_of(form);
     const Candidate* const candidate = model.candidate;
@@ -265,7 +263,8 @@ void spacing_dialog(const Model& model, Actions& actions)
     ImGui::PopItemWidth();
     const std::optional<VoxelSize> size = voxel_size_of(correcting.text);
     if (size) action = {size->spacing, size->unit.empty() ? model.volume.unit : size->unit};
-    const std::string why = size ? why_not(model, action) : EXPECTED_VOXEL_SIZE;
+    std::string why = why_no_voxel_size(correcting.text, model.volume.unit);
+    if (why.empty()) why = why_not(model, action);
     dialog_note("Paint and nodes stay at their voxels; lengths follow. The work is saved and opened again.", why);
     const ImVec2 button{8.0f * ImGui::GetFontSize(), 0.0f};
     ImGui::BeginDisabled(!why.empty());

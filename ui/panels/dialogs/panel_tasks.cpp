@@ -8,11 +8,14 @@
 #include <optional>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include <imgui/imgui.h>
 
 #include "engine/base/progress.h"
+#include "engine/tasks/task_output.h"
 #include "engine/workbench/actions/action_rows.h"
+#include "engine/workbench/forms/disk_space.h"
 #include "engine/workbench/forms/form_names.h"
 #include "ui/files/asked.h"
 #include "ui/files/file_list.h"
@@ -41,25 +44,77 @@ std::string replacement(const Task& task)
 
 /// Result of checking a task on disk.
 struct Verdict {
-    std::string refusal;      ///< reason why the task is unavailable; empty: it is available
-    std::string replacement;  ///< what it replaces
-    KnownScan scan{};         ///< the scan that an import reads
+    std::string refusal;                ///< reason why the task is unavailable; empty: it is available
+    std::vector<std::string> warnings;  ///< what it replaces, and space that it may lack
+    KnownScan scan{};                   ///< the scan that an import reads
+    std::filesystem::path free_name{};  ///< for a project whose name is taken
 };
 
+void add_warning(Verdict& verdict, std::string warning)
+{
+    if (!warning.empty()) verdict.warnings.push_back(std::move(warning));
+}
+
+void judge_space(Verdict& verdict, const BytesNeeded& needed, std::optional<double> free_bytes)
+{
+    SpaceWords words = words_of_space(needed, free_bytes);
+    if (verdict.refusal.empty()) verdict.refusal = std::move(words.refusal);
+    add_warning(verdict, std::move(words.warning));
+}
+
+/// Returns a file that the task writes; empty: none whose size a form knows.
 template <class Task>
-Verdict verdict_on(const Task& task)
+std::filesystem::path written_file(const Task& task)
+{
+    if constexpr (std::is_same_v<Task, ExportTask>) {
+        for (const auto& path : {task.mask, task.trace, task.surface})
+            if (!path.empty()) return path;
+    } else if constexpr (std::is_same_v<Task, LabelTask>) {
+        return task.output;
+    }
+    return {};
+}
+
+template <class Task>
+void judge(Verdict& verdict, const Task& task, const BytesNeeded& needed)
+{
+    check(task);
+    add_warning(verdict, replacement(task));
+    if (const std::filesystem::path file = written_file(task); !file.empty())
+        judge_space(verdict, needed, free_space(file));
+}
+
+void judge(Verdict& verdict, const ImportTask& task, const BytesNeeded&)
+{
+    check(task);
+    const ImportPlace place = look_at_place(task);
+    verdict.refusal = place.why_not;
+    verdict.free_name = place.free_name;
+    add_warning(verdict, words_of_replacement(task, place));
+    // The server of an address is asked once the import begins, not while a person types.
+    if (is_typed_address(task.volume.string())) return;
+    verdict.scan = estimate_of(task);
+    judge_space(verdict, bytes_written(*verdict.scan), verdict.scan->free_bytes);
+}
+
+/// `needed`: what the form says that the task writes.
+template <class Task>
+Verdict verdict_on(const Task& task, const BytesNeeded& needed)
 {
     Verdict verdict;
     try {
-        check(task);
-        // The server of an address is asked once the import begins, not while a person types.
-        if constexpr (requires { estimate_of(task); })
-            if (!is_typed_address(task.volume.string())) verdict.scan = estimate_of(task);
-        verdict.replacement = replacement(task);
+        judge(verdict, task, needed);
     } catch (const std::exception& error) {
         verdict.refusal = error.what();
     }
     return verdict;
+}
+
+template <class Form>
+BytesNeeded needed_by(const Form& form, const Model& model)
+{
+    if constexpr (requires { bytes_written(form, model); }) return bytes_written(form, model);
+    return {};
 }
 
 constexpr const char* WAITS = "Waiting for the disk";
@@ -100,8 +155,9 @@ public:
         const bool has_chooser = draw_form(form_, model, known_.scan, begins);
         const Task task = task_of(form_, base_of(model).parent_path());
         const std::string why = refusal(model, task);
-        const bool is_replaced = why.empty() && !known_.replacement.empty();
-        dialog_note(about(form_, model, known_.scan), is_replaced ? known_.replacement : why);
+        dialog_note(about(form_, model, known_.scan), why);
+        if (why.empty())
+            for (const std::string& warning : known_.warnings) dialog_note({}, warning);
         const ImGuiViewport& screen = *ImGui::GetMainViewport();
         keep_above(screen.WorkPos.y + screen.WorkSize.y);
         if (ends(task, why, has_chooser, model, actions) || model.dialog != dialog_) {
@@ -155,18 +211,18 @@ private:
         if constexpr (requires { why_not(form_); })
             if (why.empty()) why = why_not(form_);
         if (!why.empty()) return why;
-        ask_disk(task);
+        ask_disk(task, needed_by(form_, model));
         if (!is_known_) return asked_.is_pending() ? WAITS : "";
         return takes_free_name() ? WAITS : known_.refusal;
     }
     /// Checks files in the background: after each change, and again now and then, since files come and go.
-    void ask_disk(const Task& task)
+    void ask_disk(const Task& task, const BytesNeeded& needed)
     {
         constexpr double AGAIN_S = 1.0;
         const std::string now = line_of(Action(task));
         const bool is_other = now != asked_of_;
         if (is_other || (!asked_.is_pending() && ImGui::GetTime() - asked_s_ > AGAIN_S)) {
-            asked_ = Asked<Verdict>([task] { return verdict_on(task); });
+            asked_ = Asked<Verdict>([task, needed] { return verdict_on(task, needed); });
             asked_of_ = now;
             asked_s_ = ImGui::GetTime();
             is_known_ = is_known_ && !is_other;
@@ -181,13 +237,10 @@ private:
     bool takes_free_name()
     {
         if constexpr (std::is_same_v<Form, ImportForm>) {
-            if (!known_.scan || known_.scan->free_name.empty() || form_.more.overwrite) return false;
-            if (form_.project == form_.suggested) {
-                form_.project = form_.suggested = known_.scan->free_name.string();
-                return true;
-            }
-            if (known_.refusal.empty())
-                known_.refusal = form_.project + ": exists already; expected a new name, or Overwrite under More";
+            if (!known_.scan || known_.free_name.empty() || form_.more.overwrite) return false;
+            if (form_.project != form_.suggested) return false;
+            form_.project = form_.suggested = known_.free_name.string();
+            return true;
         }
         return false;
     }

@@ -229,7 +229,7 @@ bool draw_form(MovieForm& form, const Model& model, const KnownScan&, bool begin
 std::string about(const FigureForm& form, const Model& model, const KnownScan&)
 {
     const glm::ivec2 pixels = pixels_of(form.size);
-    const std::filesystem::path folder = placed(form.path, base_of(model).parent_path()).parent_path();
+    const std::filesystem::path folder = placed_new(form.path, base_of(model).parent_path()).parent_path();
     return sentence("Draws ", pixels.x, " x ", pixels.y, " pixels to ", folder.string(),
                     ". The file keeps the session, from which shvr render makes it again.");
 }

@@ -120,7 +120,6 @@ bool draw_form(LabelForm& form, const Model& model, const KnownScan&, bool begin
     field_name("Smallest part");
     whole_field("##smallest", form.more.fewest_voxels);
     hint("Voxels; smaller parts are left out.");
-    form.more.fewest_voxels = std::max<int64_t>(form.more.fewest_voxels, 1);
     field_name("Write labels");
     ImGui::Checkbox("##writes", &form.writes_labels);
     hint("Otherwise the parts are counted, and nothing is written.");
@@ -142,19 +141,22 @@ std::string about(const ExportForm& form, const Model& model, const KnownScan&)
     for (const auto& path : {task.mask, task.offset, task.trace, task.mesh, task.metrics, task.measurements})
         files += !path.empty();
     if (!task.surface.empty()) files += files_of_surfaces(form, model);
-    const std::filesystem::path folder = placed(form.base, base_of(model).parent_path()).parent_path();
+    const std::filesystem::path folder = placed_new(form.base, base_of(model).parent_path()).parent_path();
     return sentence("Writes ", files, files == 1 ? " file" : " files", " to ", folder.string(), ".");
 }
 
-std::string about(const ImportForm&, const Model&, const KnownScan& known)
+std::string about(const ImportForm& form, const Model& model, const KnownScan& known)
 {
-    if (!known) return "A project opens at once, however large the scan. The scan's own file stays as it is.";
+    std::string annotation = words_of_annotation(form, model);
+    if (!annotation.empty()) annotation = " " + annotation;
+    if (!known)
+        return "A project opens at once, however large the scan. The scan's own file stays as it is." + annotation;
     const Size3& size = known->size;
     std::string text = sentence("The scan has ", size_in_words(known->scan), " (", in_words(known->scan.spacing_from),
                                 "). The project takes at most ", bytes_in_words(known->most_bytes));
     if (size != known->scan.size) text += sentence(" for ", size.x, " x ", size.y, " x ", size.z, " voxels");
     if (known->free_bytes) text += sentence("; ", bytes_in_words(*known->free_bytes), " are free");
-    return text + ".";
+    return text + "." + annotation;
 }
 
 std::string about(const LabelForm& form, const Model& model, const KnownScan&)

@@ -15,7 +15,7 @@ namespace shvr::ui {
 
 /// The form of a comparison is its table of fields.
 struct CompareForm {
-    EvaluateTask task;
+    EvaluateTask task{.names = OptionNames::titles};
 };
 
 /// What is known about the scan that an import reads; null: not yet.
