@@ -16,9 +16,7 @@ PREPARED = {"copy_measurements": "measure", "clear_measurements": "measure", "me
 INNER = {"Open recent", "Look from", "Kept views", "Panels", "Turn the view", "Move the view", "Distance blending",
          "Cutting planes", "Clip planes", "Touch", "Looks", "Group of the selection", "view 1", "Remove"}
 EXPECTED = {
-    "Copy the session": "copy_session", "Revert to the last save": "revert", "Shading": "set light.shaded",
-    "Threshold into a group...": "show_dialog", "Show everything": "reset_cuts", "Go there": "look_from",
-    "Remove this view": "forget_camera",
+    "Go there": "look_from", "Remove this view": "forget_camera",
 }
 BY_MENU = {"Look from": "look_from", "Panels": "prefer", "Group of the selection": "group"}   # from every entry
 # Entries that say something else than their action, since of their kind there is one for each group or brush.
@@ -33,8 +31,7 @@ STAYS_OPEN = {"Turn the view", "Move the view", "Distance blending", "Clip plane
 AGAIN = {"full_screen", "side_panels", "tool_bar", "volume", "meshes", "guide", "let_go"}
 ESCAPED = {"help", "preferences", "messages", "palette", "passes", "open", "focus_panels", "focus_menu", "save_as",
            "open_with_options", "correct_spacing", "import_scan", "export_work", "label_parts", "compare",
-           "load_annotation", "operate", "figure", "movie", "keep_look",
-           "Threshold into a group..."}
+           "load_annotation", "operate", "figure", "movie", "keep_look", "threshold_group"}
 
 
 class MenuWalk(Seen):
@@ -51,7 +48,7 @@ class MenuWalk(Seen):
                                              "keys": {name: {"keys": chord} for name, chord in keys.items()}})
         self.rows = [{**row, "today": keys.get(row["id"], row["today"])} for row in shortcut_rows()]
         self.chords = {chord for row in self.rows for chord in row["today"].split()}
-        self.names = {row["does"] for row in self.rows} | INNER | set(EXPECTED) | {"Open the example"}
+        self.names = {row["does"] for row in self.rows} | INNER | set(EXPECTED)
         self.do("mousemove", *self.middle(), pause_s=0)
         self.check_key("Ctrl+D", "keep_camera")   # view 1
 
@@ -118,7 +115,7 @@ class MenuWalk(Seen):
     def kind_of(self, path, entry):
         """Entries of one kind in one menu are made by the same lines of the program. Empty: it is not chosen here."""
         row = self.row_of(entry)
-        if entry == "Open the example" or path[-1] == "Open recent" or row and row["id"] in AT_LAST | WITH_THE_POINTER:
+        if path[-1] == "Open recent" or row and row["id"] in AT_LAST | WITH_THE_POINTER:
             return ""
         if row:
             return "setting" if row["action"].startswith("set ") else "command"
@@ -159,7 +156,7 @@ class MenuWalk(Seen):
                 self.check_choice(path, entry, wanted)
             else:
                 self.check_key(row["today"].split()[0], row["action"])
-        if name in ESCAPED or entry in ESCAPED:
+        if name in ESCAPED:
             self.see_frames()   # what is shown has the keys from the second frame on
             self.press("Escape")
             self.see_frames()

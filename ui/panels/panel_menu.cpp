@@ -10,7 +10,6 @@
 #include <imgui/imgui.h>
 
 #include "engine/base/error.h"
-#include "engine/workbench/actions/action_rows.h"
 #include "engine/workbench/bindings/keymap.h"
 #include "engine/workbench/bindings/preferences_file.h"
 #include "engine/workbench/bindings/tools.h"
@@ -26,20 +25,6 @@ namespace shvr::ui {
 namespace {
 
 constexpr const char* AXES[] = {"x", "y", "z"};
-
-/// Draws an item that is disabled while its action is unavailable; a tooltip then states the reason.
-bool reasoned_item(const char* name, const std::string& why)
-{
-    const bool is_chosen = ImGui::MenuItem(name, nullptr, false, why.empty());
-    if (!why.empty() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", why.c_str());
-    return is_chosen;
-}
-
-/// Draws the menu item of an action that has no shortcut.
-void action_item(const char* name, const Action& action, const Model& model, Actions& actions)
-{
-    if (reasoned_item(name, why_not(model, action))) actions.push_back(action);
-}
 
 /// Draws shortcuts that act while held as buttons, since choosing a menu item would close the menu at each step.
 void held_items(const char* group, const Model& model, Actions& actions)
@@ -68,11 +53,11 @@ void file_menu(const Model& model, Actions& actions)
             if (ImGui::MenuItem(path.c_str())) actions.push_back(Open{path});
         ImGui::EndMenu();
     }
-    action_item("Open the example", OpenExample{}, model, actions);
+    shortcut_item("open_example", model, actions);
     shortcut_item("save", model, actions);
     shortcut_item("save_as", model, actions);
-    action_item("Copy the session", CopySession{}, model, actions);
-    action_item("Revert to the last save", RevertOp{}, model, actions);
+    shortcut_item("copy_session", model, actions);
+    shortcut_item("revert", model, actions);
     ImGui::Separator();
     task_menu(model, actions);
     shortcut_item("load_annotation", model, actions);
@@ -97,7 +82,9 @@ void edit_menu(const Model& model, Actions& actions)
     shortcut_item("undo", model, actions);
     shortcut_item("redo", model, actions);
     ImGui::Separator();
-    threshold_item(model, actions);
+    shortcut_item("threshold_group", model, actions);
+    if (model.is_open)
+        hint("All voxels of a range of intensities, in the whole scan or a box; previewed in the picture.");
     shortcut_item("operate", model, actions);
     ImGui::Separator();
     shortcut_item("preferences", model, actions, model.shows_preferences);
@@ -138,7 +125,7 @@ void cut_menu(const Model& model, Actions& actions)
     shortcut_item("remove_oblique_cut", model, actions);
     shortcut_item("plane_handles", model, actions, model.session.view.plane_handles);
     ImGui::Separator();
-    if (ImGui::MenuItem("Show everything")) actions.push_back(ResetCuts{});
+    shortcut_item("show_everything", model, actions);
     ImGui::EndMenu();
 }
 
@@ -197,9 +184,7 @@ void view_menu(const Model& model, Actions& actions)
     held_items("Turn the view", model, actions);
     held_items("Move the view", model, actions);
     ImGui::Separator();
-    Light light = model.session.light;
-    if (ImGui::MenuItem("Shading", nullptr, &light.shaded, model.is_open))
-        set(actions, model, [&](Session& s) { s.light = light; });
+    shortcut_item("shading", model, actions, model.session.light.shaded);
     shortcut_item("update_occlusion", model, actions);
     held_items("Distance blending", model, actions);
     cut_menu(model, actions);

@@ -116,8 +116,6 @@ void task_menu(const Model& model, Actions& actions);
 bool task_dialog_waits();
 /// Shows the dialog that makes a project of that volume, from the next frame on.
 void ask_to_import(const std::filesystem::path& volume, Actions& actions);
-/// Draws the menu item that shows the window of operations with the threshold chosen.
-void threshold_item(const Model& model, Actions& actions);
 /// Draws the window in which an operation on groups is chosen, previewed and carried out.
 void operations_window(const Model& model, Actions& actions);
 /// Returns whether that window, as last drawn, starts a preview once its values have rested.

@@ -1,6 +1,7 @@
 #pragma once
 // Actions on the window, on keys and on preferences.
 
+#include "engine/annotation/operations/operations.h"
 #include "engine/workbench/actions/action_row.h"
 #include "engine/workbench/models/dialogs.h"
 
@@ -84,6 +85,7 @@ struct FocusOn {
 /// Shows a dialog that asks for files and options, instead of the one that is shown; none closes it.
 struct ShowDialog {
     Dialog dialog = Dialog::none;
+    std::string operation{};  ///< id of the operation on groups to choose in its window; empty: the one chosen there
 };
 
 struct ShowFullScreen {
@@ -164,7 +166,13 @@ inline constexpr auto WINDOW_ACTIONS = std::tuple{
     row<ShowDialog, WindowState>(
         {"show_dialog", "Show a dialog", WINDOW_GROUP, "shows a dialog that asks for files and options, or closes it",
          Needs::nothing},
-        [](auto& f, ShowDialog& a) { f.choice("dialog", a.dialog, {.meaning = "which one", .is_required = true}); },
+        [](auto& f, ShowDialog& a) {
+            f.choice("dialog", a.dialog, {.meaning = "which one", .is_required = true});
+            f.text("operation", a.operation, {"the operation on groups that its window shows"});
+            const auto has_id = [&](const OperationRow& each) { return each.id == a.operation; };
+            f.check("operation", a.operation.empty() || std::ranges::any_of(OPERATION_ROWS, has_id),
+                    "the id of an operation on groups, such as \"grow\"");
+        },
         [](const auto& model, const ShowDialog& action) -> std::string {
             if (!needs_document(action.dialog)) return {};
             if (!model.is_open) return "nothing is open";

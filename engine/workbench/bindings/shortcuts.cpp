@@ -128,6 +128,31 @@ Action toggle_view(const Model& model, double)
     return edited(model.session, [](Session& s) { s.view.*FLAG = !(s.view.*FLAG); });
 }
 
+Action show_all_groups(const Model& model, double)
+{
+    return edited(model.session, [](Session& s) { s.view.solo.reset(); });
+}
+
+Action toggle_shading(const Model& model, double)
+{
+    return edited(model.session, [](Session& s) { s.light.shaded = !s.light.shaded; });
+}
+
+Action light_over_shoulder(const Model& model, double)
+{
+    return edited(model.session, [](Session& s) { s.light.direction = glm::dvec3(0.0); });
+}
+
+Action blend_to_background(const Model& model, double)
+{
+    return edited(model.session, [](Session& s) { s.blend.color.reset(); });
+}
+
+Action probe_in_group_color(const Model& model, double)
+{
+    return edited(model.session, [](Session& s) { s.probe.color.reset(); });
+}
+
 template <int DIRECTION>
 Action scale_workspace(const Model& model, double amount)
 {
@@ -369,14 +394,24 @@ constexpr Shortcut SHORTCUTS[] = {
      Mode::tap,
      [](const Model& model, double) -> Action { return AskOpen{!model.asks_what_to_open}; },
      {"Ctrl+O", "Ctrl+O"}},
+    both("open_example", WORK_KEYS, "Open the example", Mode::tap, plain<OpenExample>, ""),
     both("save", WORK_KEYS, "Save", Mode::tap, plain<SaveOp>, "Ctrl+S"),
     both("save_as", WORK_KEYS, "Save as...", Mode::tap, show_dialog<Dialog::save_as>, "Ctrl+Shift+S"),
+    both("copy_session", WORK_KEYS, "Copy the session", Mode::tap, plain<CopySession>, ""),
+    both("revert", WORK_KEYS, "Revert to the last save", Mode::tap, plain<RevertOp>, ""),
     both("open_with_options", WORK_KEYS, "Open with options...", Mode::tap, show_dialog<Dialog::open_with_options>, ""),
     {"load_annotation", WORK_KEYS, "Load annotation...", Mode::tap, show_dialog<Dialog::load>, {"Ctrl+L", ""}},
+    both("load_mesh", WORK_KEYS, "Load a mesh...", Mode::tap, show_dialog<Dialog::load>, ""),
     {"import_scan", WORK_KEYS, "Import as project...", Mode::tap, show_dialog<Dialog::import_scan>, {"Ctrl+I", ""}},
     {"export_work", WORK_KEYS, "Export...", Mode::tap, show_dialog<Dialog::export_work>, {"Ctrl+E", ""}},
     both("label_parts", WORK_KEYS, "Label connected parts...", Mode::tap, show_dialog<Dialog::label>, ""),
     both("operate", WORK_KEYS, "Operations on groups...", Mode::tap, show_dialog<Dialog::operation>, ""),
+    both(
+        "threshold_group", WORK_KEYS, "Threshold into a group...", Mode::tap,
+        [](const Model&, double) -> Action {
+            return ShowDialog{Dialog::operation, row_of(GroupOperation(ThresholdOp())).id};
+        },
+        ""),
     both("compare", WORK_KEYS, "Compare with a reference...", Mode::tap, show_dialog<Dialog::compare>, ""),
     both("correct_spacing", WORK_KEYS, "Correct the spacing...", Mode::tap, show_dialog<Dialog::spacing>, ""),
     {"screenshot", WORK_KEYS, "Screenshot", Mode::tap, plain<Screenshot>, {"F12", "P"}},
@@ -408,6 +443,9 @@ constexpr Shortcut SHORTCUTS[] = {
     both(
         "preferences", WORK_KEYS, "Preferences...", Mode::tap,
         [](const Model& model, double) -> Action { return ShowPreferences{!model.shows_preferences}; }, "Ctrl+,"),
+    both(
+        "show_hints", WORK_KEYS, "Show the first hints again", Mode::tap,
+        [](const Model&, double) -> Action { return Prefer{R"({"hints_seen":0})"}; }, ""),
     both("step_back", WORK_KEYS, "Close, or back to turning", Mode::tap, step_back, "Escape"),
     both(
         "passes", WORK_KEYS, "GPU passes", Mode::tap,
@@ -469,6 +507,11 @@ constexpr Shortcut SHORTCUTS[] = {
         [](const Model&, double) -> Action { return FocusOn{"menu"}; }, "Shift+F10"),
     both("volume", VIEWS_KEYS, "Volume", Mode::tap, toggle_view<&ViewSettings::volume>, "F2"),
     both("meshes", VIEWS_KEYS, "Nodes, internodes and probe", Mode::tap, toggle_view<&ViewSettings::meshes>, "F3"),
+    both("show_all_groups", VIEWS_KEYS, "Show all groups again", Mode::tap, show_all_groups, ""),
+    both("shading", VIEWS_KEYS, "Shading", Mode::tap, toggle_shading, ""),
+    both("light_over_shoulder", VIEWS_KEYS, "Light over the shoulder", Mode::tap, light_over_shoulder, ""),
+    both("blend_to_background", VIEWS_KEYS, "Distance blending in the background's colour", Mode::tap,
+         blend_to_background, ""),
     both("cut_box", VIEWS_KEYS, "Clip box with handles", Mode::tap, toggle_view<&ViewSettings::cut_box>, ""),
     both("oblique_cut", VIEWS_KEYS, "Oblique cutting plane, facing the view", Mode::tap,
          cut_obliquely<PlaneChange::add>, ""),
@@ -478,6 +521,8 @@ constexpr Shortcut SHORTCUTS[] = {
          cut_obliquely<PlaneChange::remove>, ""),
     both("plane_handles", VIEWS_KEYS, "Handles of the oblique cutting plane", Mode::tap,
          toggle_view<&ViewSettings::plane_handles>, ""),
+    both("show_everything", VIEWS_KEYS, "Show everything", Mode::tap, plain<ResetCuts>, ""),
+    both("no_clip_planes", VIEWS_KEYS, "No clip planes", Mode::tap, plain<PlaceClips>, ""),
 
     both("tool_turn", TOOL_KEYS, "Turn with the mouse", Mode::tap, take<Tool::turn>, "Alt+1"),
     both("tool_paint", TOOL_KEYS, "Paint with the mouse", Mode::tap, take<Tool::paint>, "Alt+2"),
@@ -555,6 +600,7 @@ constexpr Shortcut SHORTCUTS[] = {
     both("next_guidance", PROBE_KEYS, "Next kind of guidance", Mode::tap, next_guidance, "Shift+Space"),
     {"arrow", PROBE_KEYS, "Arrow towards the probe", Mode::tap, toggle<&ProbeSettings::arrow>, {"Shift+F1", "F1"}},
     both("silhouette", PROBE_KEYS, "Silhouette of the probe", Mode::tap, toggle<&ProbeSettings::silhouette>, ""),
+    both("probe_in_group_color", PROBE_KEYS, "Probe in the colour of its group", Mode::tap, probe_in_group_color, ""),
     both("probe_left", PROBE_KEYS, "Probe a voxel to the left", Mode::repeated, step_probe<0, -1, 0>, "Left"),
     both("probe_right", PROBE_KEYS, "Probe a voxel to the right", Mode::repeated, step_probe<0, 1, 0>, "Right"),
     both("probe_up", PROBE_KEYS, "Probe a voxel up", Mode::repeated, step_probe<0, 0, 1>, "Up"),
@@ -635,6 +681,7 @@ constexpr Shortcut SHORTCUTS[] = {
     both("clicks", HAND_KEYS, "Click where contact begins", Mode::tap, toggle_feel<&FeelSettings::clicks>, ""),
     both("record_stylus", HAND_KEYS, "Record the stylus, or end it", Mode::tap, toggle_recording, ""),
     both("find_devices", HAND_KEYS, "Look for devices", Mode::tap, plain<FindDevices>, ""),
+    both("calibrate_device", HAND_KEYS, "Calibrate the haptic device", Mode::tap, plain<CalibrateDevice>, ""),
 };
 
 }  // namespace

@@ -48,6 +48,7 @@ void WindowState::act(const ShowDialog& action)
 {
     if (needs_document(action.dialog) && !document_) decline("Nothing is open");
     dialog_ = action.dialog;
+    if (!action.operation.empty()) operation_ = action.operation;
 }
 
 void WindowState::act(const FocusOn& action)
@@ -92,6 +93,7 @@ WindowModel WindowState::model() const
                       .asks_what_to_open = asks_what_to_open_,
                       .shows_preferences = shows_preferences_,
                       .dialog = dialog_,
+                      .operation = operation_,
                       .gpu_name = renderer_.device().traits().name};
     if (!document_) return shown;
     shown.device_bytes = renderer_.memory().device_bytes();

@@ -35,6 +35,7 @@ private:
     bool shows_help_ = false, shows_passes_ = false, shows_palette_ = false, is_full_screen_ = false;
     bool asks_what_to_open_ = false, shows_preferences_ = false;
     Dialog dialog_ = Dialog::none;
+    std::string operation_ = "grow";  ///< id of the operation that the window of operations on groups shows
     std::string focus_;
     std::filesystem::path page_;
     std::optional<PassRun> compared_passes_;

@@ -23,7 +23,8 @@ struct Preferences;
 struct PreferenceModel {
     const Keymap& keymap;
     const Preferences& preferences;
-    std::string_view awaits_key{};  ///< id of the shortcut to which the next pressed key will be bound; empty: none
+    std::string_view awaits_key{};    ///< id of the shortcut, or the action as text, that gets the next pressed key
+    std::string_view key_question{};  ///< asks whether that takes over a key that stands for something else
 };
 
 /// Made by the shelf of presets.
@@ -42,6 +43,7 @@ struct WindowModel {
          is_full_screen = false;
     bool asks_what_to_open = false, shows_preferences = false;
     Dialog dialog = Dialog::none;  ///< the dialog that is asked for
+    std::string_view operation{};  ///< id of the operation that the window of operations on groups shows
     std::string_view gpu_name{};
     uint64_t device_bytes = 0, device_budget = 0;
     std::map<std::string, uint64_t> bytes_by_name{};  ///< device memory by name; empty unless the passes are shown

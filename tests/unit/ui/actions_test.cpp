@@ -150,6 +150,7 @@ std::vector<Action> samples()
             Prefer{R"({"layout":null,"theme":"light"})"},
             ShowPreferences{false},
             ShowDialog{Dialog::export_work},
+            ShowDialog{Dialog::operation, "fill_holes"},
             PreviewOperation{R"({"op":"grow","group":3,"distance":2})"},
             FocusOn{"menu"},
             ShowFullScreen{false},
@@ -219,6 +220,8 @@ TEST_CASE("what is no action is refused, naming what was found and what was expe
     CHECK(refusal(R"({"op":"fly"})").find("fly") != std::string::npos);
     CHECK(refusal(R"({"op":"expect","nodes":3})").find("expected") != std::string::npos);
     CHECK(refusal(R"({"op":"set","values":3})").find("values is 3") != std::string::npos);
+    CHECK(refusal(R"({"op":"show_dialog","dialog":"operation","operation":"inflate"})")
+              .find("operation is \"inflate\"") != std::string::npos);
     for (const char* text : {"", "orbit 3", "orbit =3", "orbit right_degrees", "fly away=1"}) {
         CAPTURE(text);
         CHECK_THROWS_AS(action_of_text(text), Error);

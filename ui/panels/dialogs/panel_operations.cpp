@@ -90,12 +90,20 @@ void follow(const Model& model)
     state.group = group;
 }
 
-void draw_choice()
+/// Takes over the operation that was asked for.
+void choose_operation(std::string_view id)
+{
+    for (size_t i = 0; i < OPERATION_ROWS.size(); ++i)
+        if (OPERATION_ROWS[i].id == id) state.chosen = i;
+}
+
+void draw_choice(Actions& actions)
 {
     field_name("Operation");
     if (ImGui::BeginCombo("##operation", OPERATION_ROWS[state.chosen].title, ImGuiComboFlags_HeightLargest)) {
         for (size_t i = 0; i < OPERATION_ROWS.size(); ++i) {
-            if (ImGui::Selectable(OPERATION_ROWS[i].title, i == state.chosen)) state.chosen = i;
+            if (ImGui::Selectable(OPERATION_ROWS[i].title, i == state.chosen))
+                actions.push_back(ShowDialog{Dialog::operation, OPERATION_ROWS[i].id});
             hint(OPERATION_ROWS[i].meaning);
         }
         ImGui::EndCombo();
@@ -106,7 +114,7 @@ void draw_choice()
     ImGui::PopTextWrapPos();
 }
 
-void draw_operation(GroupOperation& operation, const Model& model)
+void draw_operation(GroupOperation& operation, const Model& model, Actions& actions)
 {
     constexpr std::string_view ROWS_OF_THEIR_OWN[]{
         "distance", "wall", "tolerance", "margin",     "group",          "with",         "inside",     "keep",
@@ -114,7 +122,7 @@ void draw_operation(GroupOperation& operation, const Model& model)
     state.why_no_groups.clear();
     state.why_no_limits.clear();
     const std::optional<glm::dvec3> clicked = point_tool().take(model.probe_voxel);
-    draw_choice();
+    draw_choice(actions);
     std::visit(
         [&](auto& op) {
             using Op = std::remove_cvref_t<decltype(op)>;
@@ -209,17 +217,6 @@ bool operations_window_waits()
     return state.is_resting;
 }
 
-void threshold_item(const Model& model, Actions& actions)
-{
-    const std::string why = why_not(model, ShowDialog{Dialog::operation});
-    if (ImGui::MenuItem("Threshold into a group...", nullptr, false, why.empty())) {
-        state.chosen = GroupOperation(ThresholdOp()).index();
-        actions.push_back(ShowDialog{Dialog::operation});
-    }
-    hint(why.empty() ? "All voxels of a range of intensities, in the whole scan or a box; previewed in the picture."
-                     : why.c_str());
-}
-
 void operations_window(const Model& model, Actions& actions)
 {
     state.is_resting = false;
@@ -229,6 +226,7 @@ void operations_window(const Model& model, Actions& actions)
         point_tool().set_on(false);
         return;
     }
+    choose_operation(model.operation);
     follow(model);
     const ImGuiViewport& screen = *ImGui::GetMainViewport();
     const float lower_edge = screen.WorkPos.y + screen.WorkSize.y - 2.0f * ImGui::GetFontSize();
@@ -245,7 +243,7 @@ void operations_window(const Model& model, Actions& actions)
         keep_corner(WINDOW_ID, actions);
         const OutlineTool::Wish wish = outline_tool().take_wish();
         if (wish == OutlineTool::Wish::cancel) outline_tool().clear();
-        draw_operation(state.operations[state.chosen], model);
+        draw_operation(state.operations[state.chosen], model, actions);
         const GroupOperation operation = state.operations[state.chosen];
         const std::string line = std::visit([](const auto& op) { return line_of(Action(op)); }, operation);
         const std::string why = refusal(model, operation, line);
