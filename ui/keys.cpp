@@ -65,20 +65,19 @@ Chord chord_with(std::string key, int mods)
             .key = std::move(key)};
 }
 
-std::vector<const Shortcut*> shortcuts_for(const KeyEvent& event, int mods, const Keymap& keymap)
+/// Returns the shortcut of a pressed key: only one, also where one is bound to its name and one to its position.
+const Shortcut* shortcut_for(const KeyEvent& event, int mods, const Keymap& keymap)
 {
-    std::vector<const Shortcut*> found;
-    const auto add = [&](const std::string& key, bool is_by_position) {
-        for (const Shortcut* shortcut : keymap.shortcuts_for(chord_with(key, mods)))
-            if (shortcut->is_by_position == is_by_position) found.push_back(shortcut);
+    const auto found = [&](const std::string& key, bool is_by_position) {
+        const Shortcut* const shortcut = keymap.shortcut_for(chord_with(key, mods));
+        return shortcut && shortcut->is_by_position == is_by_position ? shortcut : nullptr;
     };
     const std::string in_layout = name_in_layout(event), at_place = name_at_place(event.key);
-    add(in_layout, false);
-    add(at_place, true);
+    if (const Shortcut* const named = found(in_layout, false)) return named;
+    if (const Shortcut* const placed = found(at_place, true)) return placed;
     // Falls back to the key at this position on an American keyboard, such as brackets instead of German umlauts.
     const bool is_letter = in_layout.size() == 1 && std::isalnum(static_cast<unsigned char>(in_layout[0]));
-    if (found.empty() && !is_letter && in_layout != at_place) add(at_place, false);
-    return found;
+    return !is_letter && in_layout != at_place ? found(at_place, false) : nullptr;
 }
 
 double rate(const Shortcut& shortcut, int mods)
@@ -118,17 +117,17 @@ void Keyboard::handle(const KeyEvent& event, const Model& model, bool ui_has_key
     }
     if (ui_has_keys) return;
     if (!model.awaits_key.empty()) return bind(event, model, actions);
-    Held held{.pressed = event};
-    for (const Shortcut* shortcut : shortcuts_for(event, event.mods, model.keymap)) {
-        const bool lasts = shortcut->mode == Shortcut::Mode::while_held;
-        if (event.repeated && shortcut->mode != Shortcut::Mode::repeated) continue;
-        actions.push_back(shortcut->action(model, rate(*shortcut, event.mods)));
-        if (lasts) held.lasting = shortcut;
+    // An action that the user bound takes the place of shortcuts: by the key's name in the layout, as it was bound.
+    if (const Action* const bound = model.keymap.action_for(chord_with(name_in_layout(event), event.mods))) {
+        if (!event.repeated) actions.push_back(*bound);
+        return;
     }
-    // Actions that the user bound: by the key's name in the layout, as they were bound.
-    if (!event.repeated)
-        for (const Action& action : model.keymap.actions_for(chord_with(name_in_layout(event), event.mods)))
-            actions.push_back(action);
+    Held held{.pressed = event};
+    const Shortcut* const shortcut = shortcut_for(event, event.mods, model.keymap);
+    if (shortcut && (!event.repeated || shortcut->mode == Shortcut::Mode::repeated)) {
+        actions.push_back(shortcut->action(model, rate(*shortcut, event.mods)));
+        if (shortcut->mode == Shortcut::Mode::while_held) held.lasting = shortcut;
+    }
     if (!event.repeated && known == held_.end()) held_.push_back(held);
 }
 
@@ -143,10 +142,10 @@ void Keyboard::hold(double seconds, int mods, const std::function<bool(int key)>
     });
     for (const Held& held : held_) {
         // When the user releases Ctrl + S, Ctrl may come first: the S that is still held must not act as a shortcut.
-        const std::vector<const Shortcut*> begun = shortcuts_for(held.pressed, held.pressed.mods, model.keymap);
-        for (const Shortcut* shortcut : shortcuts_for(held.pressed, mods, model.keymap))
-            if (shortcut->mode == Shortcut::Mode::hold && std::ranges::find(begun, shortcut) != begun.end())
-                actions.push_back(shortcut->action(model, taps * rate(*shortcut, mods)));
+        const Shortcut* const shortcut = shortcut_for(held.pressed, mods, model.keymap);
+        if (shortcut && shortcut->mode == Shortcut::Mode::hold &&
+            shortcut == shortcut_for(held.pressed, held.pressed.mods, model.keymap))
+            actions.push_back(shortcut->action(model, taps * rate(*shortcut, mods)));
     }
 }
 

@@ -105,6 +105,38 @@ class Panels(Seen):
         self.assertEqual(self.done()[-1]["values"]["layout"]["panels"], {"occlusion": {"folded": False, "place": "side"}})
         self.finish()
 
+    def test_a_key_for_an_entry_is_told_by_name_and_a_taken_one_is_asked_for_twice(self):
+        self.open_scan(self.write_ball(), preferences={"hints_seen": 3})
+        self.do("mousemove", *self.middle())
+        self.look_in_palette("Ambient Light 0.4")
+        self.press_and_look("Insert")
+        self.see_no_more("", PALETTE)
+        self.see("Press the key for 'Ambient light: 0.4'", "Status")
+        self.what_follows(lambda: self.press("Ctrl+S"), "bind_keys")
+        self.see("The key Ctrl + S stands for 'Save'", "Status")
+        self.what_follows(lambda: self.press("Ctrl+S"), "bind_keys")
+        self.see("The key Ctrl + S stands for 'Ambient light: 0.4'", "Status")
+        before = len(self.done())
+        self.check_follows(lambda: self.press("Ctrl+S"), "set light.ambient")
+        self.assertNotIn("save", {line["op"] for line in self.done(before)})
+        self.press_and_look("F1")
+        self.see("Entries of Find anything", "Keys and mouse")
+        self.see("Ambient light: 0.4", "Keys and mouse")
+        self.press_and_look("Escape")
+        self.finish()
+
+    def test_an_operation_on_groups_is_found_by_its_title(self):
+        self.open_scan(self.write_ball(), preferences={"hints_seen": 3})
+        self.do("mousemove", *self.middle())
+        self.type_in_palette("fill holes")
+        self.see("fills what a group encloses on all sides", "Operations on groups")
+        self.assertIn({"op": "show_dialog", "dialog": "operation", "operation": "fill_holes"}, self.done())
+        self.press("Escape")
+        self.look_in_palette("ambient abc")
+        self.see("Ambient light: expected a number from 0 to 10", PALETTE)
+        self.press("Escape")
+        self.finish()
+
     def install(self):
         """A tree like an installed one, with a first page of the manual; returns the program in it and the page."""
         program = self.folder / "tree" / "bin" / "shvr"

@@ -11,7 +11,7 @@
 #include "engine/base/error.h"
 #include "engine/workbench/bindings/keymap.h"
 #include "engine/workbench/bindings/palette.h"
-#include "engine/workbench/models/preferences.h"
+#include "engine/workbench/models/preference_rows.h"
 #include "ui/panels/widgets.h"
 
 namespace shvr::ui {
@@ -72,27 +72,42 @@ bool begin_list(const char* id)
     return true;
 }
 
-std::string all_keys_of(const Shortcut& shortcut, const Keymap& keymap)
+std::string in_words(const std::vector<Chord>& chords)
 {
     std::string text;
-    for (const Chord& chord : keymap.chords_of(shortcut)) text += (text.empty() ? "" : ", ") + in_words(chord);
+    for (const Chord& chord : chords) text += (text.empty() ? "" : ", ") + in_words(chord);
     return text;
 }
 
-/// Draws a button with the keys of a shortcut. After a click on it, the next key pressed is bound to the shortcut.
-void keys_of(const Shortcut& shortcut, const Model& model, Actions& actions)
+/// Draws a button with the keys of a shortcut's id, or of an action as text. After a click on it, the next key pressed
+/// is bound to that.
+void keys_of(const std::string& id, const std::vector<Chord>& chords, const Model& model, Actions& actions)
 {
-    const bool waits = model.awaits_key == shortcut.id;
-    const std::string keys = all_keys_of(shortcut, model.keymap);
+    const bool waits = model.awaits_key == id;
+    const std::string keys = in_words(chords);
     const std::string label = waits ? "press a key ..." : keys.empty() ? "(no key)" : keys;
     ImGui::PushStyleVar(ImGuiStyleVar_ButtonTextAlign, {0.0f, 0.5f});
     if (waits) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
     if (ImGui::Button(label.c_str(), {KEY_COLUMN * ImGui::GetFontSize(), 0.0f}))
-        actions.push_back(AwaitKey{waits ? "" : shortcut.id});
+        actions.push_back(AwaitKey{waits ? "" : id});
     if (waits) ImGui::PopStyleColor();
     ImGui::PopStyleVar();
     hint(waits ? "Escape leaves it as it is; Delete takes the key away."
                : "Click, then press another key for it. Escape leaves it as it is; Delete takes the key away.");
+}
+
+/// Draws a text that needs the user's attention.
+void warn(const std::string& text)
+{
+    ImGui::PushStyleColor(ImGuiCol_Text, WARNING);
+    ImGui::TextWrapped("%s", text.c_str());
+    ImGui::PopStyleColor();
+}
+
+/// Draws the question whether a key is taken over, in the row that waits for it.
+void question(const std::string& id, const Model& model)
+{
+    if (model.awaits_key == id && !model.key_question.empty()) warn(std::string(model.key_question));
 }
 
 /// Shows the meaning of a shortcut, other shortcuts that have the same keys, and how to restore the default.
@@ -106,17 +121,16 @@ void meaning_of(const Shortcut& shortcut, const Model& model, Actions& actions)
         if (ImGui::SmallButton("Reset")) actions.push_back(BindKeys{shortcut.id, shipped});
         hint(sentence("Default: ", *shipped ? shipped : "no key").c_str());
     }
-    for (const Shortcut* rival : model.keymap.rivals_of(shortcut)) {
-        ImGui::PushStyleColor(ImGuiCol_Text, WARNING);
-        ImGui::TextWrapped("also means: %s", rival->name);
-        ImGui::PopStyleColor();
-    }
+    for (const Shortcut* rival : model.keymap.rivals_of(shortcut))
+        warn(sentence("shares its key with: ", rival->name, "; only one of them acts"));
+    question(shortcut.id, model);
 }
 
 bool is_found(const Shortcut& shortcut, const Model& model, const std::string& text)
 {
     return has_words(
-        sentence(shortcut.name, ' ', shortcut.group, ' ', shortcut.id, ' ', all_keys_of(shortcut, model.keymap)), text);
+        sentence(shortcut.name, ' ', shortcut.group, ' ', shortcut.id, ' ', in_words(model.keymap.chords_of(shortcut))),
+        text);
 }
 
 /// Draws the shortcuts under headings, one per group; `listed` is ordered by group.
@@ -129,9 +143,29 @@ void key_list(std::span<const Shortcut> listed, const Model& model, const std::s
         ImGui::PushID(shortcut.id);
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
-        keys_of(shortcut, model, actions);
+        keys_of(shortcut.id, model.keymap.chords_of(shortcut), model, actions);
         ImGui::TableNextColumn();
         meaning_of(shortcut, model, actions);
+        ImGui::PopID();
+    }
+}
+
+/// Draws the entries of the palette to which the user bound keys.
+void bound_list(const Model& model, const std::string& text, Actions& actions)
+{
+    constexpr const char* HEADING = "Entries of Find anything";
+    bool is_first = true;
+    for (const Keymap::Bound& bound : model.keymap.bound()) {
+        if (!has_words(sentence(bound.name, ' ', HEADING, ' ', in_words(bound.chords)), text)) continue;
+        if (std::exchange(is_first, false)) heading(HEADING);
+        ImGui::PushID(bound.text.c_str());
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        keys_of(bound.text, bound.chords, model, actions);
+        ImGui::TableNextColumn();
+        ImGui::AlignTextToFramePadding();
+        ImGui::TextWrapped("%s", bound.name.c_str());
+        question(bound.text, model);
         ImGui::PopID();
     }
 }
@@ -160,6 +194,7 @@ void both_columns(const Model& model, const std::string& text, Actions& actions)
     const size_t split = text.empty() ? middle(listed) : listed.size();
     ImGui::TableNextColumn();
     if (begin_list("left")) {
+        bound_list(model, text, actions);
         key_list(listed.first(split), model, text, actions);
         ImGui::EndTable();
     }
@@ -177,11 +212,10 @@ void head(const Model& model, std::string& text, Actions& actions)
     ImGui::InputTextWithHint("##search", "search: a name or a key", &text);
     ImGui::SameLine(0.0f, 2.0f * ImGui::GetFontSize());
     ImGui::TextUnformatted("Keys");
-    for (const auto& [set, name] :
-         {std::pair{KeySet::modern, "usual"}, std::pair{KeySet::thesis, "of the SHVR thesis"}}) {
+    for (const auto& [set, name] : KEY_SETS) {
         ImGui::SameLine();
-        if (ImGui::RadioButton(name, model.preferences.key_set == set))
-            actions.push_back(ChooseKeys{std::string(KEY_SETS[size_t(set)].name)});
+        if (ImGui::RadioButton(key_set_in_words(set), model.preferences.key_set == set))
+            actions.push_back(ChooseKeys{std::string(name)});
     }
     ImGui::TextDisabled("Keys for turning, moving and cutting repeat while held; with Shift slowly.");
 }

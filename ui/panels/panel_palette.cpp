@@ -56,22 +56,36 @@ bool was_pressed(ImGuiKey key)
     return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key));
 }
 
+/// Returns a text as it fits into the cell that begins here.
+std::string in_cell(const std::string& text)
+{
+    return shortened(text, ImGui::GetContentRegionAvail().x);
+}
+
+/// Draws the next cell; a pointer over the line shows the whole of a cut text.
+void cell(const std::string& text)
+{
+    ImGui::TableNextColumn();
+    const std::string shown = in_cell(text);
+    ImGui::TextDisabled("%s", shown.c_str());
+    if (shown != text) hint(text.c_str());
+}
+
 /// Draws a line: the entry's name, its group or the reason why it is unavailable, and its keys.
-bool line(const PaletteEntry& entry, bool is_chosen, int number)
+bool line(PaletteEntry entry, bool is_chosen, int number)
 {
     const bool is_grey = !entry.why_not.empty();
     ImGui::PushID(number);
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
+    const std::string name = std::exchange(entry.name, in_cell(entry.name));
     if (is_grey) ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
     const bool is_clicked = ImGui::Selectable(entry.name.c_str(), is_chosen, ImGuiSelectableFlags_SpanAllColumns);
     if (is_grey) ImGui::PopStyleColor();
+    if (name != entry.name) hint(name.c_str());
     if (is_chosen && !ImGui::IsItemVisible()) ImGui::SetScrollHereY();
-    ImGui::TableNextColumn();
-    ImGui::TextDisabled("%s", is_grey ? entry.why_not.c_str() : entry.group.c_str());
-    if (is_grey) hint(entry.why_not.c_str());
-    ImGui::TableNextColumn();
-    ImGui::TextDisabled("%s", entry.keys.c_str());
+    cell(is_grey ? entry.why_not : entry.group);
+    cell(entry.keys);
     ImGui::PopID();
     return is_clicked;
 }

@@ -4,7 +4,7 @@
 
 #include <imgui/imgui.h>
 
-#include "engine/workbench/models/preferences.h"
+#include "engine/workbench/models/preference_rows.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 
@@ -38,18 +38,18 @@ void theme_row(const Preferences& preferences, Actions& actions)
     ImGui::NewLine();
 }
 
-/// Draws a number. A change is applied only when the mouse is released, since it may move the widget under the mouse.
-void number_row(const char* label, const char* key, double now, double least, double most, const char* format,
-                const char* text, Actions& actions)
+/// Draws a number, up to `most`, behind its label. A change is applied only when the mouse is released, since it may
+/// move the widget under the mouse.
+void number_row(const PreferenceNumber& number, double now, double most, const char* format, Actions& actions)
 {
     static const char* edited_key = nullptr;
     static double edited = 0.0;
-    row_label(label);
+    const char* const key = number.key;
     ImGui::PushID(key);
     ImGui::SetNextItemWidth(11.0f * ImGui::GetFontSize());
     double shown = edited_key == key ? edited : now;
-    const bool is_changed = slider_scalar("##value", ImGuiDataType_Double, &shown, &least, &most, format);
-    hint(text);
+    const bool is_changed = slider_scalar("##value", ImGuiDataType_Double, &shown, &number.least, &most, format);
+    hint(number.hint);
     if (ImGui::IsItemActive() || is_changed) {
         edited_key = key;
         edited = shown;
@@ -67,28 +67,31 @@ void number_row(const char* label, const char* key, double now, double least, do
 void keys_row(const Model& model, Actions& actions)
 {
     row_label("Keys");
-    for (const auto& [set, name] :
-         {std::pair{KeySet::modern, "usual"}, std::pair{KeySet::thesis, "of the SHVR thesis"}}) {
-        if (ImGui::RadioButton(name, model.preferences.key_set == set))
-            actions.push_back(ChooseKeys{std::string(KEY_SETS[size_t(set)].name)});
+    for (const auto& [set, name] : KEY_SETS) {
+        if (ImGui::RadioButton(key_set_in_words(set), model.preferences.key_set == set))
+            actions.push_back(ChooseKeys{std::string(name)});
         ImGui::SameLine();
     }
     if (ImGui::Button("Change single keys...")) actions.push_back(ShowHelp{true});
 }
 
 /// Draws the row of a memory limit. By default there is no fixed limit: SHVR then uses as much memory as is free.
-void budget_row(const char* label, const char* key, const std::optional<double>& mebibytes, uint64_t present_bytes,
-                const char* meaning, Actions& actions)
+void budget_row(const PreferenceNumber& number, const std::optional<double>& mebibytes, uint64_t present_bytes,
+                Actions& actions)
 {
-    ImGui::PushID(key);
+    constexpr double MAX_BY_MOUSE = 65536.0;
+    ImGui::PushID(number.key);
     bool is_automatic = !mebibytes;
-    row_label(label);
+    row_label(number.label);
     if (ImGui::Checkbox("as much as fits", &is_automatic))
-        prefer(actions, sentence('"', key, "\":",
+        prefer(actions, sentence('"', number.key, "\":",
                                  is_automatic ? std::string("null")
                                               : std::to_string(std::max<uint64_t>(present_bytes >> 20, 16))));
-    hint(meaning);
-    if (mebibytes) number_row("", key, *mebibytes, Preferences::MIN_BUDGET_MIB, 65536.0, "%.0f MiB", meaning, actions);
+    hint(number.hint);
+    if (mebibytes) {
+        row_label("");
+        number_row(number, *mebibytes, MAX_BY_MOUSE, "%.0f MiB", actions);
+    }
     ImGui::PopID();
 }
 
@@ -112,23 +115,20 @@ void preferences_window(const Model& model, Actions& actions)
         ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize;
     if (ImGui::Begin("Preferences", &is_open, flags)) {
         theme_row(preferences, actions);
-        number_row("Text", "font_pixels", preferences.font_pixels, Preferences::MIN_FONT_PIXELS,
-                   Preferences::MAX_FONT_PIXELS, "%.0f pixels", "Font size at a scale of 1.", actions);
+        row_label(TEXT_SIZE.label);
+        number_row(TEXT_SIZE, preferences.font_pixels, TEXT_SIZE.most, "%.0f pixels", actions);
         bool follows = !preferences.scale;
-        row_label("Scale");
+        row_label(WINDOW_SCALE.label);
         if (ImGui::Checkbox("as the screen says", &follows))
             prefer(actions, follows ? "\"scale\":null" : "\"scale\":1");
         hint("Follows the scale of the screen that the window is on.");
-        if (preferences.scale)
-            number_row("", "scale", *preferences.scale, Preferences::MIN_SCALE, Preferences::MAX_SCALE, "%.2f times",
-                       "Size of everything except the picture.", actions);
+        if (preferences.scale) {
+            row_label("");
+            number_row(WINDOW_SCALE, *preferences.scale, WINDOW_SCALE.most, "%.2f times", actions);
+        }
         keys_row(model, actions);
-        budget_row("GPU memory", "budget_device_mib", preferences.budget_device_mib, model.device_budget,
-                   "Device memory for volumes, pictures and paint. Applies from the next start.", actions);
-        budget_row("Memory", "budget_host_mib", preferences.budget_host_mib, uint64_t{1} << 30,
-                   "Main memory for bricks on their way to the device, from the next start; imports that need more are "
-                   "refused.",
-                   actions);
+        budget_row(DEVICE_BUDGET, preferences.budget_device_mib, model.device_budget, actions);
+        budget_row(HOST_BUDGET, preferences.budget_host_mib, uint64_t{1} << 30, actions);
         buttons(actions);
         ImGui::TextDisabled("Kept for all scans. Double-click a slider to restore its default.");
     }

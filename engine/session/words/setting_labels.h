@@ -11,6 +11,8 @@ struct SettingLabel {
     std::string_view key;     ///< as in the table of keys: "light.ambient", "groups.N.color"
     std::string_view label;   ///< a noun phrase: "ambient light"
     std::string_view unit{};  ///< after the value; empty: none
+    /// The panels' words for it and for its values, where they are others; for searches.
+    std::string_view in_panels{};
 };
 
 /// Returns the labels of all settings that sessions patch (session_patch.h), in the order of the table of keys.

@@ -7,6 +7,7 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/workbench/actions/action_rows.h"
+#include "engine/workbench/bindings/action_names.h"
 
 namespace shvr::ui {
 
@@ -50,17 +51,6 @@ std::vector<Chord> chords_in(std::string_view text)
     for (const std::string_view word : words_of(text)) {
         const std::optional<Chord> chord = chord_of(word);
         SHVR_CHECK(chord, text);
-        chords.push_back(*chord);
-    }
-    return chords;
-}
-
-std::vector<Chord> chords_of_change(const std::string& id, const std::vector<std::string>& texts)
-{
-    std::vector<Chord> chords;
-    for (const std::string& text : texts) {
-        const std::optional<Chord> chord = chord_of(text);
-        if (!chord) fail("keys: ", id, " is '", text, "'; expected a key such as Ctrl+Z, F5, PageUp or [");
         chords.push_back(*chord);
     }
     return chords;
@@ -111,39 +101,82 @@ std::string in_words(const Chord& chord)
     return text + (named == std::end(NAMED_KEYS) ? chord.key : named->second);
 }
 
+std::vector<Chord> chords_of(const std::string& id, const std::vector<std::string>& texts)
+{
+    std::vector<Chord> chords;
+    for (const std::string& text : texts) {
+        const std::optional<Chord> chord = chord_of(text);
+        if (!chord) fail("keys: ", id, " is '", text, "'; expected a key such as Ctrl+Z, F5, PageUp or [");
+        chords.push_back(*chord);
+    }
+    return chords;
+}
+
+std::string name_of_binding(const std::string& id)
+{
+    const Shortcut* const shortcut = shortcut_named(id);
+    return shortcut ? shortcut->name : name_of(action_of_id(id));
+}
+
 Keymap::Keymap(KeySet set, const Changes& changes)
 {
     for (const Shortcut& shortcut : shortcuts()) chords_.push_back(chords_in(shortcut.keys[size_t(set)]));
+    are_changed_.resize(chords_.size());
     for (const auto& [id, texts] : changes) {
-        const std::vector<Chord> chords = chords_of_change(id, texts);
-        if (const Shortcut* const shortcut = shortcut_named(id))
-            chords_[size_t(shortcut - shortcuts().data())] = chords;
-        else
-            bound_.push_back({id, action_of_id(id), chords});
+        const std::vector<Chord> chords = ui::chords_of(id, texts);
+        if (const Shortcut* const shortcut = shortcut_named(id)) {
+            const size_t index = size_t(shortcut - shortcuts().data());
+            chords_[index] = chords;
+            are_changed_[index] = true;
+        } else {
+            const Action action = action_of_id(id);
+            bound_.push_back({id, name_of(action), action, chords});
+        }
     }
 }
 
-std::vector<const Shortcut*> Keymap::shortcuts_for(const Chord& chord) const
+/// Returns how closely a shortcut is bound to the chord; 0: not at all.
+int Keymap::rank_of(const Shortcut& shortcut, const Chord& chord) const
 {
-    std::vector<const Shortcut*> found;
-    for (const Shortcut& shortcut : shortcuts())
-        if (std::ranges::any_of(chords_of(shortcut), [&](const Chord& bound) { return means(shortcut, bound, chord); }))
-            found.push_back(&shortcut);
-    // If a shortcut is bound to the exact chord, drops shortcuts that are bound without Shift and only slowed by it.
-    const auto is_exact = [&](const Shortcut* shortcut) {
-        return std::ranges::find(chords_of(*shortcut), chord) != chords_of(*shortcut).end();
-    };
-    if (std::ranges::any_of(found, is_exact))
-        std::erase_if(found, [&](const Shortcut* each) { return !is_exact(each); });
+    const std::vector<Chord>& chords = chords_of(shortcut);
+    const bool is_changed = are_changed_[size_t(&shortcut - shortcuts().data())];
+    if (std::ranges::find(chords, chord) != chords.end()) return is_changed ? 3 : 2;
+    // It is bound to the chord without Shift, which slows it.
+    return std::ranges::any_of(chords, [&](const Chord& bound) { return means(shortcut, bound, chord); }) ? 1 : 0;
+}
+
+const Shortcut* Keymap::shortcut_for(const Chord& chord) const
+{
+    if (action_for(chord)) return nullptr;
+    const Shortcut* found = nullptr;
+    int highest = 0;
+    for (const Shortcut& shortcut : shortcuts()) {
+        const int rank = rank_of(shortcut, chord);
+        if (rank <= highest) continue;
+        found = &shortcut;
+        highest = rank;
+    }
     return found;
 }
 
-std::vector<Action> Keymap::actions_for(const Chord& chord) const
+const Action* Keymap::action_for(const Chord& chord) const
 {
-    std::vector<Action> found;
     for (const Bound& each : bound_)
-        if (std::ranges::find(each.chords, chord) != each.chords.end()) found.push_back(each.action);
-    return found;
+        if (std::ranges::find(each.chords, chord) != each.chords.end()) return &each.action;
+    return nullptr;
+}
+
+std::vector<std::string> Keymap::holders_of(const Chord& chord) const
+{
+    const auto has_it = [&](const std::vector<Chord>& chords) {
+        return std::ranges::find(chords, chord) != chords.end();
+    };
+    std::vector<std::string> ids;
+    for (const Shortcut& shortcut : shortcuts())
+        if (has_it(chords_of(shortcut))) ids.emplace_back(shortcut.id);
+    for (const Bound& each : bound_)
+        if (has_it(each.chords)) ids.push_back(each.text);
+    return ids;
 }
 
 std::string Keymap::text_of_action(const std::string& action) const
@@ -155,6 +188,13 @@ std::string Keymap::text_of_action(const std::string& action) const
 const std::vector<Chord>& Keymap::chords_of(const Shortcut& shortcut) const
 {
     return chords_[size_t(&shortcut - shortcuts().data())];
+}
+
+std::vector<Chord> Keymap::chords_of(const std::string& id) const
+{
+    if (const Shortcut* const shortcut = shortcut_named(id)) return chords_of(*shortcut);
+    const auto found = std::ranges::find(bound_, id, &Bound::text);
+    return found == bound_.end() ? std::vector<Chord>() : found->chords;
 }
 
 std::string Keymap::text_of(const Shortcut& shortcut) const
@@ -179,7 +219,7 @@ std::vector<std::string> Keymap::conflicts() const
     for (const Shortcut& shortcut : shortcuts())
         for (const Chord& chord : chords_of(shortcut)) bound[chord].emplace_back(shortcut.name);
     for (const Bound& each : bound_)
-        for (const Chord& chord : each.chords) bound[chord].push_back(each.text);
+        for (const Chord& chord : each.chords) bound[chord].push_back(each.name);
     std::vector<std::string> sentences;
     for (const auto& [chord, wanted] : bound) {
         if (wanted.size() < 2) continue;

@@ -1,6 +1,7 @@
 #include "engine/workbench/bindings/palette.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
@@ -11,8 +12,10 @@
 #include "engine/session/words/setting_labels.h"
 #include "engine/session/words/typed_number.h"
 #include "engine/workbench/actions/action_rows.h"
+#include "engine/workbench/bindings/action_names.h"
 #include "engine/workbench/bindings/keymap.h"
 #include "engine/workbench/bindings/palette_lists.h"
+#include "engine/workbench/models/preference_rows.h"
 
 namespace shvr::ui {
 
@@ -35,17 +38,30 @@ const std::vector<SessionKey>& keys_of_settings()
     return KEYS;
 }
 
-/// Returns a setting as it is called in the window: "Ambient light".
-std::string title_of(const SessionKey& key)
+/// Returns the panels' words for a setting, where they are not its label's.
+std::string_view words_in_panels(const SessionKey& key)
 {
     const SettingLabel* const label = label_of_setting(key.name);
-    return label ? capitalised(label->label) : key.name;
+    return label ? label->in_panels : std::string_view();
+}
+
+/// Returns a setting's label, and the panels' words for it.
+std::string called(const SessionKey& key)
+{
+    return title_of_setting(key.name) + ' ' + std::string(words_in_panels(key));
+}
+
+/// Returns the description of a setting, next to its name.
+std::string about(const SessionKey& key)
+{
+    const std::string_view words = words_in_panels(key);
+    return words.empty() ? "Setting: " + key.name : sentence("Setting: ", key.name, " (", words, ')');
 }
 
 /// Returns whether a setting's label, key or meaning has all the words. Words do not find one of many, "points.N".
 bool is_found(const SessionKey& key, std::string_view words)
 {
-    std::string where = title_of(key) + ' ' + key.name + ' ' + key.meaning;
+    std::string where = called(key) + ' ' + key.name + ' ' + key.meaning;
     std::ranges::replace_if(
         where, [](char each) { return each == '.' || each == '_'; }, ' ');
     const bool is_one_of_many = key.name.find(".N") != std::string::npos || key.name.find("NAME") != std::string::npos;
@@ -74,6 +90,7 @@ PaletteEntry typed_exactly(const Model& model, const std::string& text, const ch
         if (const Set* const set = entry.action->as<Set>(); set && entry.why_not.empty())
             static_cast<void>(patched(model.session, set->patch));
     } catch (const Error& error) {
+        entry.action.reset();
         entry.why_not = error.what();
     }
     return entry;
@@ -122,16 +139,18 @@ void add_address(std::vector<PaletteEntry>& entries, const Model& model, std::st
     entries.push_back(std::move(entry));
 }
 
+/// Adds an action typed as text, its id or its id and arguments, or a setting typed as "key=value".
 void add_typed(std::vector<PaletteEntry>& entries, const Model& model, std::string_view text)
 {
     if (is_address(text)) return add_address(entries, model, text);
-    const std::string_view first = text.substr(0, text.find(' '));
-    const size_t equals = text.find('=');
-    if (is_action_id(first)) {
-        entries.push_back(typed(model, text, "Action", action_of_text));
-    } else if (equals != std::string_view::npos && equals > 0 && text.substr(0, equals).find(' ') == text.npos) {
-        entries.push_back(typed(model, text, "Setting", set_of));
-    }
+    const size_t equals = text.find('='), end = std::min(text.find(' '), text.size());
+    const std::string first = lower_case(text.substr(0, end));
+    const bool has_values = equals != std::string_view::npos;
+    if (is_action_id(first) && (has_values || end == text.size()))
+        entries.push_back(typed(model, first + std::string(text.substr(end)), "Action", action_of_text));
+    else if (has_values && equals > 0 && equals < end)
+        entries.push_back(
+            typed(model, lower_case(text.substr(0, equals)) + std::string(text.substr(equals)), "Setting", set_of));
 }
 
 void add_shortcuts(std::vector<PaletteEntry>& entries, const Model& model, std::string_view text)
@@ -173,21 +192,33 @@ private:
     JsonDocument settings_;
 };
 
-/// Returns the values that a setting may have, if they are few words: "true, false", or names in quotes.
+bool is_flag(const SessionKey& key)
+{
+    return key.allowed.find("true, false") != std::string::npos;
+}
+
+/// Returns the names that a setting may have as its value, or "true" and "false".
 std::vector<std::string> few_values(const SessionKey& key)
 {
-    if (key.allowed.find("true, false") != std::string::npos) return {"true", "false"};
+    if (is_flag(key)) return {"true", "false"};
     std::vector<std::string> values;
     for (size_t at = key.allowed.find('"'); at != std::string::npos; at = key.allowed.find('"', at)) {
         const size_t end = key.allowed.find('"', at + 1);
         if (end == std::string::npos) break;
-        values.push_back(key.allowed.substr(at, end + 1 - at));
+        if (key.allowed[at + 1] != '#') values.push_back(key.allowed.substr(at, end + 1 - at));  // "#rrggbb"
         at = end + 1;
     }
     return values;
 }
 
-/// Adds the other values of settings that have few and may have those now, and asks for the value of the others.
+/// Returns whether a setting may have other values than those of few_values().
+bool has_more_values(const SessionKey& key)
+{
+    return !key.allowed.empty() && !is_flag(key) && (few_values(key).empty() || !key.allowed.starts_with("`\""));
+}
+
+/// Adds the values of settings that have few and may have those now, and asks for the value of the others. A flag has
+/// only the other value.
 void add_settings(std::vector<PaletteEntry>& entries, const Model& model, std::string_view text)
 {
     constexpr size_t MAX_SETTINGS = 24;
@@ -198,42 +229,96 @@ void add_settings(std::vector<PaletteEntry>& entries, const Model& model, std::s
         if (!is_found(key, text)) continue;
         --left;
         if (!present) present.emplace(model.session);
-        const std::string now = present->of(key.name), title = title_of(key);
-        const std::string about =
-            "Setting: " + key.name + (now.empty() ? "" : ", now " + value_in_words(key.name, now));
+        const std::string now = present->of(key.name);
+        const std::string group = about(key) + (now.empty() ? "" : ", now " + value_in_words(key.name, now));
         for (const std::string& value : few_values(key)) {
-            if (value == now) continue;
+            if (value == now && is_flag(key)) continue;
             PaletteEntry entry = typed_exactly(model, sentence(key.name, '=', value), "", set_of);
             if (!entry.why_not.empty()) continue;
-            entry.name = title + ": " + value_in_words(key.name, value);
-            entry.group = about;
+            entry.name = setting_in_words(key.name, value);
+            entry.group = group;
             entries.push_back(std::move(entry));
         }
-        if (few_values(key).empty() && !key.allowed.empty())
-            entries.push_back({.name = title, .group = about, .completion = key.name + '='});
+        if (has_more_values(key))
+            entries.push_back({.name = title_of_setting(key.name), .group = group, .completion = key.name + '='});
     }
 }
 
-/// Adds the settings that match the words before a typed value, as in "ambient 0.4".
-void add_values(std::vector<PaletteEntry>& entries, const Model& model, std::string_view text)
+/// Words and a value behind them, as in "ambient 0.4".
+struct WordsAndValue {
+    std::string_view words, value;
+};
+
+/// Returns the entry of a setting with a typed value. If the value is refused, its name is the setting's, and the
+/// reason says which values are expected.
+PaletteEntry with_value(const Model& model, const SessionKey& key, std::string_view value)
 {
-    const size_t space = text.rfind(' ');
-    if (space == std::string_view::npos) return;
-    const std::string_view words = trimmed(text.substr(0, space)), value = text.substr(space + 1);
+    const bool is_on = is_flag(key) && lower_case(value) == "on", is_off = is_flag(key) && lower_case(value) == "off";
+    const std::string text = sentence(key.name, '=', is_on ? "true" : is_off ? "false" : value);
+    PaletteEntry entry = typed(model, text, "", set_of);
+    const std::string title = title_of_setting(key.name);
+    entry.group = about(key);
+    entry.name = entry.why_not.empty() ? name_of(*entry.action) : title;
+    if (entry.why_not.empty()) return entry;
+    const size_t expected = entry.why_not.rfind("expected ");
+    const std::string reason =
+        expected == std::string::npos ? "expected another value" : entry.why_not.substr(expected);
+    entry.why_not = title + ": " + (is_flag(key) ? "expected on or off" : reason);
+    return entry;
+}
+
+/// Adds the settings that have the words, with the value. `refused` gets those that are called so and refuse the value.
+void add_values(std::vector<PaletteEntry>& entries, std::vector<PaletteEntry>& refused, const Model& model,
+                const WordsAndValue& wanted)
+{
     size_t left = MAX_VALUES;
     for (const SessionKey& key : keys_of_settings()) {
-        if (!is_found(key, words)) continue;
-        PaletteEntry entry = typed(model, sentence(key.name, '=', value), "", set_of);
-        if (!entry.why_not.empty()) continue;
-        entry.name = sentence(title_of(key), ": ", entry.name.substr(key.name.size() + 1));
-        entry.group = "Setting: " + key.name;
-        entries.push_back(std::move(entry));
-        if (--left == 0) return;
+        if (left == 0) return;
+        if (!is_found(key, wanted.words)) continue;
+        PaletteEntry entry = with_value(model, key, wanted.value);
+        if (entry.why_not.empty()) {
+            entries.push_back(std::move(entry));
+            --left;
+        } else if (has_words(called(key), wanted.words) && refused.size() < MAX_VALUES) {
+            refused.push_back(std::move(entry));
+        }
     }
+}
+
+/// The same for preferences that are numbers.
+void add_preferred(std::vector<PaletteEntry>& entries, std::vector<PaletteEntry>& refused, const WordsAndValue& wanted)
+{
+    const std::optional<double> value = typed_number(wanted.value);
+    for (const PreferenceNumber& number : PREFERENCE_NUMBERS) {
+        if (!has_words(sentence(number.label, " preferences"), wanted.words)) continue;
+        const std::string group = sentence("Preferences: ", number.hint);
+        if (value && *value >= number.least && *value <= number.most) {
+            const Action action = Prefer{sentence("{\"", number.key, "\":", digits_of(*value), '}')};
+            entries.push_back({.name = name_of(action), .group = group, .action = action});
+        } else {
+            refused.push_back(
+                {.name = number.label,
+                 .group = group,
+                 .why_not = sentence(number.label, ": expected a number from ", number_in_words(number.least), " to ",
+                                     number_in_words(number.most), ' ', number.unit)});
+        }
+    }
+}
+
+/// Adds what the words and the value behind them set. Returns what would have been set by another value.
+std::vector<PaletteEntry> add_by_value(std::vector<PaletteEntry>& entries, const Model& model, std::string_view text)
+{
+    std::vector<PaletteEntry> refused;
+    const size_t space = text.rfind(' ');
+    if (space == std::string_view::npos) return refused;
+    const WordsAndValue wanted{trimmed(text.substr(0, space)), text.substr(space + 1)};
+    if (model.is_open) add_values(entries, refused, model, wanted);
+    add_preferred(entries, refused, wanted);
+    return refused;
 }
 
 /// Adds actions found by the beginning of their id, and settings found by the beginning of their key.
-void add_completions(std::vector<PaletteEntry>& entries, std::string_view text)
+void add_completions(std::vector<PaletteEntry>& entries, const std::string& text)
 {
     if (text.empty() || text.find('=') != std::string_view::npos) return;
     size_t left = MAX_COMPLETIONS;
@@ -250,6 +335,19 @@ void add_completions(std::vector<PaletteEntry>& entries, std::string_view text)
         if (is_key && key.name.starts_with(text)) add(key.name, sentence(key.meaning, "; ", key.allowed), '=');
 }
 
+/// Returns the entries with what a key would be bound to, and with the keys of those that have some.
+std::vector<PaletteEntry> bindable(std::vector<PaletteEntry> entries, const Model& model)
+{
+    for (PaletteEntry& entry : entries) {
+        const Set* const set = entry.action ? entry.action->as<Set>() : nullptr;
+        const bool changes_nothing = set && set->patch == "{}";
+        if (!entry.action || !entry.bound_as.empty() || changes_nothing) continue;
+        entry.bound_as = text_of(*entry.action);
+        entry.keys = model.keymap.text_of_action(entry.bound_as);
+    }
+    return entries;
+}
+
 }  // namespace
 
 bool has_words(std::string_view where, std::string_view text)
@@ -262,27 +360,25 @@ bool has_words(std::string_view where, std::string_view text)
 std::vector<PaletteEntry> palette_entries(const Model& model, std::string_view text)
 {
     text = trimmed(text);
-    std::vector<PaletteEntry> entries, as_typed;
-    add_typed(as_typed, model, text);
-    // An unavailable typed action may also be the beginning of a shortcut's name, so shortcuts are listed before it.
-    const bool is_done = !as_typed.empty() && as_typed.front().why_not.empty();
-    if (is_done) entries = as_typed;
+    std::vector<PaletteEntry> entries;
+    add_typed(entries, model, text);
+    const bool is_line = is_address(text) || text.find('=') != text.npos;
+    if (is_line && !entries.empty()) return bindable(std::move(entries), model);
+    // Only an action's id was typed, which may also be a word for something else: that comes first.
+    const std::vector<PaletteEntry> as_typed = std::exchange(entries, {});
     add_shortcuts(entries, model, text);
-    if (!text.empty() && !is_done) {
-        add_values(entries, model, text);
+    if (!text.empty()) {
+        std::vector<PaletteEntry> refused = add_by_value(entries, model, text);
         add_listed(entries, model, text);
         if (model.is_open) add_settings(entries, model, text);
+        if (entries.empty()) entries = std::move(refused);
     }
-    // If there are entries, hides the error that an action lacks its arguments: add_completions() offers to add them.
-    if (!entries.empty() && text.find_first_of(" =") == text.npos) as_typed.clear();
-    if (!is_done) entries.insert(entries.end(), as_typed.begin(), as_typed.end());
-    add_completions(entries, text);
-    for (PaletteEntry& entry : entries) {
-        if (!entry.action || !entry.bound_as.empty()) continue;
-        entry.bound_as = text_of(*entry.action);
-        entry.keys = model.keymap.text_of_action(entry.bound_as);
-    }
-    return entries;
+    const bool is_found = !entries.empty();
+    for (const PaletteEntry& entry : as_typed)
+        if (!is_found || entry.why_not.empty()) entries.push_back(entry);
+    // A word of a person's may be the beginning of an id or a key, too.
+    if (!is_found || text.find_first_of("_.") != text.npos) add_completions(entries, lower_case(text));
+    return bindable(std::move(entries), model);
 }
 
 }  // namespace shvr::ui

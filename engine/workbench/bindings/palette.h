@@ -1,7 +1,8 @@
 #pragma once
-// Interprets text typed into the palette: shortcuts, panels, settings, recent files, groups, views, nodes and transfer
-// functions by words, an action as text ("look_from camera=top"), a setting with its value ("light.ambient=0.4" or
-// "ambient 0.4"), or the beginning of one of these. Pure; main thread only.
+// Interprets text typed into the palette: shortcuts, operations, panels, settings, preferences, recent files, groups,
+// brushes, views, nodes and transfer functions by words, in any case; a value behind words ("ambient 0.4"); and for
+// those who write scripts, an action as text ("look_from camera=top"), a setting as key and value
+// ("light.ambient=0.4"), or the beginning of one of these. Pure; main thread only.
 
 #include <optional>
 #include <string>
@@ -23,8 +24,9 @@ struct PaletteEntry {
     std::string bound_as{};          ///< what a key is bound to (BindKeys); empty: the entry cannot have a key
 };
 
-/// Returns entries, best match first: a typed action or setting, shortcuts and panels, settings with a typed value,
-/// items of the scan, then possible completions of the text. For an empty text, returns all shortcuts.
+/// Returns entries, best match first: shortcuts, settings and preferences with a typed value, lists (palette_lists.h),
+/// settings, then an action whose id was typed. If nothing has the words, the settings that refuse the value, and
+/// possible completions of the text. For a text with "=", only the action or setting. For an empty text, all shortcuts.
 std::vector<PaletteEntry> palette_entries(const Model& model, std::string_view text);
 
 /// Returns whether each word of `text` occurs in `where`, ignoring case.

@@ -6,10 +6,11 @@
 #include "engine/session/transfer_presets.h"
 #include "engine/workbench/actions/action_rows.h"
 #include "engine/workbench/appearance/layout.h"
+#include "engine/workbench/bindings/action_names.h"
 #include "engine/workbench/bindings/preferences_file.h"
 #include "engine/workbench/edits/edit.h"
 #include "engine/workbench/edits/group_steps.h"
-#include "engine/workbench/models/preferences.h"
+#include "engine/workbench/models/preference_rows.h"
 
 namespace shvr::ui {
 
@@ -23,10 +24,12 @@ public:
     Listing(std::vector<PaletteEntry>& entries, const Model& model, std::string_view text)
         : entries_(entries), model_(model), text_(text)
     {}
+    void add(const Action& action, const std::string& group) { add(name_of(action), group, action); }
+    /// `also`: further words that find it.
     void add(const std::string& name, const std::string& group, const Action& action,
-             const std::optional<Action>& then = {})
+             const std::optional<Action>& then = {}, const char* also = "")
     {
-        if (left_ == 0 || !has_words(name + ' ' + group, text_)) return;
+        if (left_ == 0 || !has_words(sentence(name, ' ', group, ' ', also), text_)) return;
         --left_;
         entries_.push_back(
             {.name = name, .group = group, .why_not = why_not(model_, action), .action = action, .then = then});
@@ -62,33 +65,64 @@ void add_node(std::vector<PaletteEntry>& entries, const Model& model, std::strin
              GoTo{model.trace.node(number).position / model.volume.spacing});
 }
 
+void add_preferences(std::vector<PaletteEntry>& entries, const Model& model, std::string_view text)
+{
+    Listing preferences(entries, model, text);
+    for (const Spelling<Theme>& theme : THEMES)
+        preferences.add(Prefer{sentence("{\"theme\":\"", theme.name, "\"}")}, "Preferences: colours of the window");
+    for (const PreferenceNumber& number : PREFERENCE_NUMBERS)
+        preferences.add(number.label, sentence("Preferences: ", number.hint), ShowPreferences{true});
+    for (const Spelling<KeySet>& set : KEY_SETS)
+        preferences.add(ChooseKeys{std::string(set.name)}, "Preferences: the set of keys");
+    for (const Spelling<PuckMoves>& moved : PUCK_MOVES)
+        preferences.add(Prefer{sentence("{\"puck\":\"", moved.name, "\"}")}, "Touch: a device that reports speeds");
+}
+
+/// Adds what paints: operations on groups, each in its window, brushes and groups.
+void add_painting(std::vector<PaletteEntry>& entries, const Model& model, std::string_view text)
+{
+    Listing operations(entries, model, text);
+    for (const OperationRow& row : OPERATION_ROWS)
+        operations.add(row.title, sentence("Operations on groups: ", row.meaning),
+                       ShowDialog{Dialog::operation, row.id}, {}, row.id);
+    Listing brushes(entries, model, text);
+    for (const BrushRow& row : BRUSHES)
+        brushes.add(Set{sentence(R"({"probe":{"brush":")", row.key, "\"}}")},
+                    row.brush == model.brush().brush ? "Brush: the present one" : "Brush");
+    Listing groups(entries, model, text);
+    for (const uint8_t group : known_groups(model))
+        groups.add(sentence("Group ", int(group), ' ', group_of(model.session.groups, group).name),
+                   "Groups: paints and traces with it", Set{sentence(R"({"probe":{"group":)", int(group), "}}")});
+}
+
+/// Adds what gives the volume another look: transfer functions, and looks that the user saved.
+void add_looks(std::vector<PaletteEntry>& entries, const Model& model, std::string_view text)
+{
+    Listing functions(entries, model, text);
+    for (const TransferPreset& preset : model.presets)
+        functions.add("Transfer function " + preset.name, "Transfer functions: fitted to the scan",
+                      edited(model.session, [&](Session& s) { s.transfer_preset = preset.name; }));
+    Listing looks(entries, model, text);
+    for (const NamedLook& look : model.looks)
+        looks.add(TakeLook{look.name}, "Looks: groups, light and transfer function");
+}
+
 }  // namespace
 
 void add_listed(std::vector<PaletteEntry>& entries, const Model& model, std::string_view text)
 {
     Listing recent(entries, model, text);
     for (const std::filesystem::path& path : model.preferences.recent)
-        recent.add("Open " + path.filename().string(), "Recent: " + path.parent_path().string(), Open{path});
+        recent.add(Open{path}, "Recent: " + path.parent_path().string());
+    add_preferences(entries, model, text);
     if (!model.is_open) return;
     Listing panels(entries, model, text);
     for (const PanelRow& row : panel_rows())
         panels.add(row.title, sentence("Panel: ", row.hint), shown_panel(row, model.preferences.layout));
-    Listing groups(entries, model, text);
-    for (const uint8_t group : known_groups(model))
-        groups.add(sentence("Group ", int(group), ' ', group_of(model.session.groups, group).name),
-                   "Groups: paints and traces with it",
-                   edited(model.session, [&](Session& s) { s.probe.brush.group = group; }));
+    add_painting(entries, model, text);
     Listing views(entries, model, text);
-    for (const std::string& camera : camera_names(model.session))
-        views.add("Look from " + camera, "Views", LookFrom{camera});
-    Listing functions(entries, model, text);
-    for (const TransferPreset& preset : model.presets)
-        functions.add(preset.name, "Transfer function: preset", edited(model.session, [&](Session& s) {
-                          s.transfer_function = transfer_function_of(preset, model.statistics);
-                      }));
-    Listing looks(entries, model, text);
-    for (const NamedLook& look : model.looks)
-        looks.add("Look " + look.name, "Looks: groups, light and transfer function", TakeLook{look.name});
+    for (const std::string& camera : camera_names(model.session)) views.add(LookFrom{camera}, "Views");
+    add_looks(entries, model, text);
     add_node(entries, model, text);
 }
 

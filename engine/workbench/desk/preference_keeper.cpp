@@ -7,6 +7,41 @@
 
 namespace shvr::ui {
 
+namespace {
+
+/// Sets the keys of a shortcut or an action. Keys equal to the default are not stored, so that they follow if the user
+/// later chooses the other set of keys.
+void set_keys(Preferences& preferences, const std::string& id, const std::vector<Chord>& chords)
+{
+    preferences.unusable_keys.erase(id);
+    const Shortcut* const shortcut = shortcut_named(id);
+    const bool is_as_shipped = shortcut ? chords == Keymap(preferences.key_set).chords_of(*shortcut) : chords.empty();
+    preferences.keys.erase(id);
+    if (is_as_shipped) return;
+    std::vector<std::string>& texts = preferences.keys[id];
+    for (const Chord& chord : chords) texts.push_back(text_of(chord));
+}
+
+/// Returns the ids of what has one of the chords, other than `id`.
+std::vector<std::string> other_holders(const Keymap& keymap, const std::vector<Chord>& chords, const std::string& id)
+{
+    std::vector<std::string> others;
+    for (const Chord& chord : chords)
+        for (std::string& holder : keymap.holders_of(chord))
+            if (holder != id && std::ranges::find(others, holder) == others.end()) others.push_back(std::move(holder));
+    return others;
+}
+
+/// "'Save' and 'Undo'"
+std::string names_of(const std::vector<std::string>& ids)
+{
+    std::string names;
+    for (const std::string& id : ids) names += sentence(names.empty() ? "" : " and ", '\'', name_of_binding(id), '\'');
+    return names;
+}
+
+}  // namespace
+
 void PreferenceKeeper::act(const ChooseKeys& action)
 {
     Preferences preferences = preferences_;
@@ -20,34 +55,47 @@ void PreferenceKeeper::act(const ChooseKeys& action)
 
 void PreferenceKeeper::act(const BindKeys& action)
 {
-    const Shortcut* const shortcut = shortcut_named(action.shortcut);
+    const std::string name = name_of_binding(action.shortcut);  // fails for what is no shortcut and no action
+    std::vector<std::string> texts;
+    for (const std::string_view chord : words_of(action.keys)) texts.emplace_back(chord);
+    const std::vector<Chord> chords = chords_of(action.shortcut, texts);
+    const std::vector<std::string> losers = other_holders(keymap_, chords, action.shortcut);
+    const bool is_pressed = awaits_key_ == action.shortcut;
+    if (!losers.empty() && is_pressed && asked_keys_ != action.keys) {
+        asked_keys_ = action.keys;
+        key_question_ = sentence("The key ", in_words(chords.front()), " stands for ", names_of(losers),
+                                 "; press it again to give it to '", name, "', or Escape to leave it");
+        return say(key_question_, Weight::warning);
+    }
     Preferences preferences = preferences_;
-    std::vector<std::string>& keys_of_it = preferences.keys[action.shortcut];
-    keys_of_it.clear();
-    preferences.unusable_keys.erase(action.shortcut);
-    for (const std::string_view chord : words_of(action.keys)) keys_of_it.emplace_back(chord);
-    // A binding equal to the default is not stored, so that it follows if the user later chooses the other set of keys.
-    const Keymap changed(preferences.key_set, preferences.keys);  // fails for what is no shortcut and no action
-    const bool is_as_shipped = shortcut
-                                   ? changed.chords_of(*shortcut) == Keymap(preferences.key_set).chords_of(*shortcut)
-                                   : keys_of_it.empty();
-    if (is_as_shipped) preferences.keys.erase(action.shortcut);
+    for (const std::string& loser : losers) {
+        std::vector<Chord> left = keymap_.chords_of(loser);
+        std::erase_if(left, [&](const Chord& each) { return std::ranges::find(chords, each) != chords.end(); });
+        set_keys(preferences, loser, left);
+    }
+    set_keys(preferences, action.shortcut, chords);
     prefer(std::move(preferences));
-    awaits_key_.clear();
-    const std::string keys = shortcut ? keymap_.text_of(*shortcut) : keymap_.text_of_action(action.shortcut);
-    const std::string name = shortcut ? shortcut->name : action.shortcut;
-    say(keys.empty() ? sentence("'", name, "' has no key") : sentence("The key ", keys, " stands for ", name));
+    await_no_key();
+    if (chords.empty()) return say(sentence("'", name, "' has no key"));
+    say(sentence("The key ", in_words(chords.front()), " stands for '", name, "'",
+                 losers.empty() ? std::string() : ", no longer for " + names_of(losers)));
     for (const std::string& conflict : keymap_.conflicts()) say(conflict, Weight::warning);
 }
 
 void PreferenceKeeper::act(const AwaitKey& action)
 {
-    const Shortcut* const shortcut = shortcut_named(action.shortcut);
-    if (!action.shortcut.empty() && !shortcut) static_cast<void>(Keymap(KeySet::modern, {{action.shortcut, {}}}));
+    if (action.shortcut.empty()) return await_no_key();
+    const std::string name = name_of_binding(action.shortcut);  // fails for what is no shortcut and no action
+    await_no_key();
     awaits_key_ = action.shortcut;
-    if (!action.shortcut.empty())
-        say(sentence("Press the key for '", shortcut ? shortcut->name : action.shortcut,
-                     "'; Escape keeps its key, Delete removes it"));
+    say(sentence("Press the key for '", name, "'; Escape keeps its key, Delete removes it"));
+}
+
+void PreferenceKeeper::await_no_key()
+{
+    awaits_key_.clear();
+    asked_keys_.clear();
+    key_question_.clear();
 }
 
 void PreferenceKeeper::act(const Prefer& action)
@@ -114,7 +162,7 @@ std::string PreferenceKeeper::with_key(const char* before, const char* shortcut,
 
 PreferenceModel PreferenceKeeper::model() const
 {
-    return {.keymap = keymap_, .preferences = preferences_, .awaits_key = awaits_key_};
+    return {.keymap = keymap_, .preferences = preferences_, .awaits_key = awaits_key_, .key_question = key_question_};
 }
 
 }  // namespace shvr::ui

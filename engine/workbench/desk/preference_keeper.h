@@ -22,7 +22,7 @@ public:
     void prefer(Preferences preferences);
     /// Moves or inserts a path at the front of the list of recently opened paths.
     void note_opened(const std::filesystem::path& path);
-    void await_no_key() { awaits_key_.clear(); }
+    void await_no_key();
     const Preferences& preferences() const { return preferences_; }
     const Keymap& keymap() const { return keymap_; }
     const std::string& awaits_key() const { return awaits_key_; }
@@ -35,7 +35,9 @@ public:
 private:
     Preferences preferences_;
     Keymap keymap_;
-    std::string awaits_key_;  ///< id of the shortcut to which the next pressed key will be bound; empty: none
+    std::string awaits_key_;    ///< id of the shortcut, or the action as text, that gets the next key; empty: none
+    std::string asked_keys_;    ///< keys that stand for something else: pressed again, they are taken over
+    std::string key_question_;  ///< what was asked then
     bool are_kept_ = false;
 };
 

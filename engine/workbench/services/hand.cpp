@@ -141,13 +141,15 @@ void Hand::follow_buttons(uint32_t buttons)
             apply(BindKeys{keeper_.awaits_key(), text_of(chord)});
             continue;
         }
-        for (const Shortcut* const shortcut : keeper_.keymap().shortcuts_for(chord)) {
-            const bool lasts = shortcut->mode == Shortcut::Mode::while_held;
-            if (is_down && was_down && shortcut->mode == Shortcut::Mode::hold)
-                apply(shortcut->action(desk_.model(), TAPS_PER_SECOND * elapsed));
-            else if (is_down != was_down && (is_down || lasts))
-                apply(shortcut->action(desk_.model(), is_down ? 1.0 : 0.0));
-        }
+        if (const Action* const bound = keeper_.keymap().action_for(chord); bound && is_down && !was_down)
+            apply(Action(*bound));  // a copy: it may change the keys
+        const Shortcut* const shortcut = keeper_.keymap().shortcut_for(chord);
+        if (!shortcut) continue;
+        const bool lasts = shortcut->mode == Shortcut::Mode::while_held;
+        if (is_down && was_down && shortcut->mode == Shortcut::Mode::hold)
+            apply(shortcut->action(desk_.model(), TAPS_PER_SECOND * elapsed));
+        else if (is_down != was_down && (is_down || lasts))
+            apply(shortcut->action(desk_.model(), is_down ? 1.0 : 0.0));
     }
     buttons_ = buttons;
 }

@@ -28,6 +28,13 @@ bool look_the_same(Session before, const Session& after)
     return before == after;
 }
 
+/// Returns the user's or the program's transfer function of that name; fails with the program's names.
+TransferPreset preset_named(const std::vector<TransferPreset>& presets, const std::string& name)
+{
+    const auto found = std::ranges::find(presets, name, &TransferPreset::name);
+    return found == presets.end() ? transfer_preset_named(name) : *found;
+}
+
 }  // namespace
 
 SettingsEditor::SettingsEditor(Desk& desk, Others others) : Service(desk), others_(std::move(others)) {}
@@ -52,8 +59,8 @@ void SettingsEditor::act(const Set& action)
     if (action.patch.empty()) return log_instead({Set{"{}"}});  // a key for what is so already
     Session after = patched(document_->session, action.patch);
     if (!after.transfer_preset.empty())
-        after.transfer_function = transfer_function_of(transfer_preset_named(std::exchange(after.transfer_preset, {})),
-                                                       document_->statistics);
+        after.transfer_function = transfer_function_of(
+            preset_named(desk_.model().presets, std::exchange(after.transfer_preset, {})), document_->statistics);
     document_->choose_thresholds(after);
     document_->choose_for_volume(after);
     const Session before = document_->session;

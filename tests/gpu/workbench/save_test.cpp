@@ -136,6 +136,9 @@ TEST_CASE_FIXTURE(OnDevice, "a button of a device that cannot do what it is for 
     CHECK(bench.model().trace.nodes().size() == 1);
     press(0);
     bench.perform(AwaitKey{"undo"});
+    press(SECOND);  // it takes hold of the volume, so it is asked for again
+    CHECK(bench.model().key_question.find("'Move the volume with the stylus while held'") != std::string::npos);
+    press(0);
     press(SECOND);
     CHECK(bench.model().trace.nodes().size() == 1);
     CHECK(bench.model().keymap.text_of(*shortcut_named("undo")) == "stylus button 2");

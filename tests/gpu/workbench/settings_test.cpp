@@ -146,3 +146,24 @@ TEST_CASE_FIXTURE(Settings, "a session with an option that was removed opens in 
     CHECK(said->text.starts_with("Opened "));
     CHECK(said->weight == Weight::warning);
 }
+
+TEST_CASE_FIXTURE(OnDevice, "a transfer function that a person keeps can be set by its name")
+{
+    TemporaryFolder folder;
+    Workbench bench(renderer(), {.has_servo = false, .settings = folder.path});
+    bench.set_pixels({48, 40});
+    bench.open(write_tubes_session(folder.path), {});
+    settle(bench);
+    const TransferFunction before = bench.model().session.transfer_function;
+    bench.perform(KeepPreset{"mine"});
+    bench.perform(Set{
+        R"({"transfer_function":{"points":[{"intensity":70,"opacity":0},{"intensity":90,"opacity":0.1},{"intensity":210,"opacity":0.8}]}})"});
+    bench.perform(Set{R"({"transfer_function":{"points":null,"preset":"mine"}})"});
+    settle(bench);
+    const TransferFunction& after = bench.model().session.transfer_function;
+    REQUIRE(after.points().size() == before.points().size());
+    CHECK(after.lower() == doctest::Approx(before.lower()));
+    CHECK(after.upper() == doctest::Approx(before.upper()));
+    bench.perform(Set{R"({"transfer_function":{"points":null,"preset":"no such"}})"});
+    CHECK(contains(bench.messages().last(), "preset is \"no such\"; expected one of: "));
+}

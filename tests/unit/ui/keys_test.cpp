@@ -7,6 +7,8 @@
 
 #include <doctest/doctest.h>
 
+#include "engine/base/file.h"
+#include "engine/base/text.h"
 #include "engine/session/session_patch.h"
 #include "engine/workbench/actions/action_rows.h"
 #include "engine/workbench/appearance/layout.h"
@@ -114,9 +116,11 @@ TEST_CASE("in both sets no two shortcuts answer to the same press")
         for (const Shortcut& shortcut : shortcuts())
             for (Chord chord : keymap.chords_of(shortcut)) {
                 CAPTURE(shortcut.id);
-                CHECK(keymap.shortcuts_for(chord).size() == 1);
+                CHECK(keymap.shortcut_for(chord) == &shortcut);
+                CHECK(keymap.holders_of(chord) == std::vector<std::string>{shortcut.id});
                 chord.shift = true;
-                if (shortcut.is_slowed()) CHECK(keymap.shortcuts_for(chord).size() == 1);
+                if (shortcut.is_slowed() && keymap.holders_of(chord).empty())
+                    CHECK(keymap.shortcut_for(chord) == &shortcut);
             }
     }
 }
@@ -171,9 +175,9 @@ TEST_CASE("the thesis's set has the keys of its appendix C, and today's set thos
         CHECK(keys_of(id, thesis) == keys);
     }
     const auto means = [&](const char* keys, const char* id) {
-        const auto found = modern.shortcuts_for(*chord_of(keys));
-        REQUIRE(found.size() == 1);
-        CHECK(std::string(found[0]->id) == id);
+        const Shortcut* const found = modern.shortcut_for(*chord_of(keys));
+        REQUIRE(found);
+        CHECK(std::string(found->id) == id);
     };
     means("Ctrl+Y", "redo");
     means("Ctrl+Shift+Z", "redo");
@@ -184,9 +188,9 @@ TEST_CASE("the thesis's set has the keys of its appendix C, and today's set thos
     // Letters that are typed by mistake cut and blend nothing, and write no file.
     for (const char* letter : {"C", "H", "I", "J", "K", "P", "R", "T", "U", "V", "Y"}) {
         CAPTURE(letter);
-        CHECK(modern.shortcuts_for(*chord_of(letter)).empty());
+        CHECK(modern.shortcut_for(*chord_of(letter)) == nullptr);
     }
-    CHECK(modern.shortcuts_for(*chord_of("Ctrl+V")).empty());
+    CHECK(modern.shortcut_for(*chord_of("Ctrl+V")) == nullptr);
 }
 
 TEST_CASE("a person's keys replace those that ship, and a chord that means two things is named")
@@ -194,7 +198,7 @@ TEST_CASE("a person's keys replace those that ship, and a chord that means two t
     const Keymap keymap(KeySet::modern, {{"undo", {"Ctrl+U"}}, {"save", {}}, {"redo", {"F5", "Ctrl+R"}}});
     CHECK(keys_of("undo", keymap) == "Ctrl + U");
     CHECK(keys_of("save", keymap).empty());
-    CHECK(keymap.shortcuts_for(*chord_of("Ctrl+Z")).empty());
+    CHECK(keymap.shortcut_for(*chord_of("Ctrl+Z")) == nullptr);
     REQUIRE(keymap.conflicts().size() == 1);
     CHECK(keymap.conflicts()[0] == "F5 stands for 'Redo' and for 'Preview of the brush'; change one of them");
     CHECK_THROWS_WITH(Keymap(KeySet::modern, {{"undoo", {"Ctrl+U"}}}),
@@ -481,6 +485,57 @@ TEST_CASE("shortcuts with the same key know of each other")
     CHECK(keymap.rivals_of(*shortcut_named("undo")).empty());
 }
 
+TEST_CASE("a key does one thing: what a person bound to it, before what ships")
+{
+    constexpr int F5 = 294, F7 = 296;
+    World world;
+    world.keymap = Keymap(KeySet::modern, {{"redo", {"F5", "Ctrl+R"}},
+                                           {"look_from camera=\"top\"", {"Ctrl+S", "F7"}},
+                                           {"look_from camera=\"left\"", {"F7"}}});
+    only<RedoOp>(actions_of(world, F5, 0));
+    CHECK(only<LookFrom>(actions_of(world, 'S', CONTROL)).camera == "top");
+    CHECK(actions_of(world, F7, 0).size() == 1);
+    CHECK(world.keymap.conflicts().size() == 3);  // said at the start, since a hand wrote them into the file
+    CHECK(world.keymap.holders_of(*chord_of("Ctrl+S")) == std::vector<std::string>{"save", "look_from camera=\"top\""});
+    // While it is held, the shortcut that it took the place of does not go on.
+    Keyboard keyboard;
+    Actions actions;
+    keyboard.handle({.key = F7, .pressed = true}, world.model, false, actions);
+    keyboard.hold(
+        0.1, 0, [](int) { return true; }, world.model, actions);
+    CHECK(actions.size() == 1);
+    // On a keyboard whose key at the place of W bears the name of another shortcut's key.
+    only<LinkOp>(actions_of(world, 'W', 0, false, ","));
+}
+
+TEST_CASE("what is bound is called as a person calls it, without JSON and ids")
+{
+    const auto name = [](const Action& action) { return name_of_binding(text_of(action)); };
+    CHECK(name(Set{R"({"light":{"ambient":0.4}})"}) == "Ambient light: 0.4");
+    CHECK(name(Set{R"({"light":{"ambient":-0.0}})"}) == "Ambient light: 0");
+    CHECK(name(Set{R"({"light":{"shaded":false}})"}) == "Shading: off");
+    CHECK(name(Set{R"({"light":{"ambient":null}})"}) == "Ambient light: as by default");
+    CHECK(name(Set{R"({"light":{"ambient":0.4,"diffuse":0.5,"specular":0}})"}) ==
+          "Ambient light: 0.4 and 2 more settings");
+    CHECK(name(Set{R"({"transfer_function":{"points":null,"preset":"haze"}})"}) == "Transfer function haze");
+    CHECK(name(Set{R"({"transfer_function":{"points":[{"intensity":7,"opacity":0},{"intensity":9,"opacity":1}]}})"}) ==
+          "Points of the transfer function: 2 points");
+    CHECK(name(Set{R"({"probe":{"group":4}})"}) == "Group 4");
+    CHECK(name(Set{R"({"probe":{"brush":"flood"}})"}) == "Flood fill");
+    CHECK(name(Prefer{R"({"theme":"light"})"}) == "Theme: light");
+    CHECK(name(Prefer{R"({"font_pixels":16})"}) == "Text: 16 pixels");
+    CHECK(name(Prefer{R"({"layout":{"panels":{"light":{"place":"side"}}}})"}) == "Light and depth");
+    CHECK(name(ChooseKeys{"thesis"}) == "Keys: from the SHVR thesis");
+    CHECK(name(LookFrom{"top"}) == "Look from top");
+    CHECK(name(TakeLook{"xylem"}) == "Look xylem");
+    CHECK(name(ShowDialog{Dialog::operation, "fill_holes"}) == "Fill holes");
+    CHECK(name(SelectOp{.near = {}, .number = 7, .within_voxels = {}}) == "Node 7");
+    CHECK(name(Orbit{3.0, 0.0}).find("right degrees 3") != std::string::npos);
+    CHECK(name_of_binding("save") == "Save");
+    CHECK_THROWS_AS(name_of_binding("no_such_thing"), Error);
+    CHECK(Keymap(KeySet::modern, {{text_of(LookFrom{"top"}), {"F5"}}}).bound().at(0).name == "Look from top");
+}
+
 TEST_CASE("any entry of the palette can have a key, which then makes its action")
 {
     World world;
@@ -502,7 +557,7 @@ TEST_CASE("any entry of the palette can have a key, which then makes its action"
         if (entry.action) CHECK_FALSE(entry.bound_as.empty());
     const Keymap rival(KeySet::modern, {{"look_from camera=\"top\"", {"Ctrl+Z"}}});
     REQUIRE(rival.conflicts().size() == 1);
-    CHECK(rival.conflicts()[0].find("'Undo' and for 'look_from camera=\"top\"'") != std::string::npos);
+    CHECK(rival.conflicts()[0].find("'Undo' and for 'Look from top'") != std::string::npos);
     CHECK_THROWS_AS(Keymap(KeySet::modern, {{"look_from", {"Ctrl+5"}}}), Error);
     CHECK_THROWS_AS(Keymap(KeySet::modern, {{"no_such_thing", {}}}), Error);
 }
@@ -570,6 +625,126 @@ TEST_CASE("the palette finds panels and settings by words, values behind words, 
     CHECK(found("leaf", "Group 4 leaf trace").action->is<Set>());
     for (const PaletteEntry& entry : palette_entries(world.model, "trans"))
         CHECK_MESSAGE(entry.name.find(".N") == std::string::npos, entry.name, " cannot be completed");
+}
+
+namespace {
+
+/// The entry of that name among those that the palette finds; of several with one name, the first.
+PaletteEntry found_in(const World& world, const std::string& text, const std::string& name)
+{
+    const std::vector<PaletteEntry> entries = palette_entries(world.model, text);
+    const auto it = std::ranges::find(entries, name, &PaletteEntry::name);
+    REQUIRE_MESSAGE(it != entries.end(), text, " does not find ", name);
+    return *it;
+}
+
+}  // namespace
+
+TEST_CASE("the palette finds all that the menus offer, whether it has a key or not")
+{
+    World world;
+    for (const Shortcut& shortcut : shortcuts()) {
+        if (*shortcut.keys[0]) continue;  // the others are found by the same lines
+        const std::string name = shortcut.name;
+        CHECK(found_in(world, name, name).bound_as == shortcut.id);
+    }
+    for (const char* words : {"OPEN the example", "copy SESSION", "revert save", "threshold group", "show everything",
+                              "shading", "calibrate", "hints again", "over the shoulder", "load mesh"})
+        CHECK_MESSAGE(!palette_entries(world.model, words).front().bound_as.empty(), words);
+    for (const OperationRow& row : OPERATION_ROWS)
+        for (const std::string& typed : {std::string(row.title), lower_case(row.title)}) {
+            const PaletteEntry entry = found_in(world, typed, row.title);
+            REQUIRE(entry.action->is<ShowDialog>());
+            CHECK(entry.action->as<ShowDialog>()->operation == row.id);
+        }
+    CHECK(found_in(world, "lasso", "Cut by an outline").action->as<ShowDialog>()->operation == "lasso");
+}
+
+TEST_CASE("menus draw what the table of shortcuts has, so that the palette lacks none of it")
+{
+    // Items with names of their own are lists, which palette_lists.cpp has, too: recent files, views, panels, groups.
+    const std::string menus = read_text("ui/panels/panel_menu.cpp", int64_t{1} << 20);
+    CHECK(menus.find("MenuItem(\"") == std::string::npos);
+}
+
+TEST_CASE("the palette finds preferences and brushes by their labels, and sets a typed value")
+{
+    World world;
+    CHECK(found_in(world, "light theme", "Theme: light").action->as<Prefer>()->patch == R"({"theme":"light"})");
+    for (const char* label : {"Text", "Scale", "GPU memory", "Memory"})
+        CHECK(found_in(world, lower_case(label), label).action->is<ShowPreferences>());
+    CHECK(found_in(world, "text 16", "Text: 16 pixels").action->as<Prefer>()->patch == R"({"font_pixels":16})");
+    CHECK(found_in(world, "gpu memory 1", "GPU memory").why_not ==
+          "GPU memory: expected a number from 16 to 1048576 MiB");
+    CHECK(found_in(world, "thesis keys", "Keys: from the SHVR thesis").action->is<ChooseKeys>());
+    for (const BrushRow& row : BRUSHES) {  // the present one, too
+        const PaletteEntry entry = found_in(world, row.title, row.title);
+        CHECK(patched(world.session, entry.action->as<Set>()->patch).probe.brush.brush == row.brush);
+    }
+}
+
+TEST_CASE("the palette finds settings by the words of the panels")
+{
+    World world;
+    for (const auto& [words, title] : std::initializer_list<std::pair<const char*, const char*>>{
+             {"Enlarged", "Zoom of the slices"},
+             {"eyes apart", "Distance between the eyes"},
+             {"Holds from", "Share of the probe's ball that holds it on a surface"},
+             {"Opaque from", "Opacity at which rays end"},
+             {"Background", "Background"},
+             {"Fade below", "Gradient at which shading fades"},
+             {"Map scale", "Scale of the maps"},
+             {"Feels", "Groups that are felt"},
+             {"Raise by", "Offset of density painting"},
+             {"probe's colour", "Colour of the probe"}})
+        CHECK_FALSE(found_in(world, words, title).completion.empty());
+    for (const auto& [words, title] : std::initializer_list<std::pair<const char*, const char*>>{
+             {"Touches", "Mode of touch: surface"},
+             {"falls off", "Falloff of density painting: distance"},
+             {"click at contact", "Clicks where contact begins: on"},
+             {"two eyes", "Arrangement of the panes: stereo"}})
+        CHECK(found_in(world, words, title).action->is<Set>());
+    // A setting of names offers the present one, too: it may be what a key is wanted for.
+    CHECK(found_in(world, "arrangement", "Arrangement of the panes: single").action->is<Set>());
+    CHECK(found_in(world, "background #102030", "Background: #102030").action->is<Set>());
+    CHECK(found_in(world, "shading OFF", "Shading: off").action->as<Set>()->patch == R"({"light":{"shaded":false}})");
+}
+
+TEST_CASE("the palette says which value a setting expects, and shows the value that it gets")
+{
+    World world;
+    for (const char* value : {"1e400", "nan", "abc", "-1"})
+        CHECK(found_in(world, sentence("ambient light ", value), "Ambient light").why_not ==
+              "Ambient light: expected a number from 0 to 10");
+    CHECK(found_in(world, "ambient abc", "Ambient light").bound_as.empty());
+    CHECK(found_in(world, "shading 7", "Shading").why_not == "Shading: expected on or off");
+    CHECK(found_in(world, "Ambient Light -0", "Ambient light: 0").why_not.empty());
+    CHECK(palette_entries(world.model, "no such thing 7").empty());
+}
+
+TEST_CASE("a person's words come before ids of scripts, in any case")
+{
+    World world;
+    for (const char* typed : {"grow", "Grow", "GROW"}) {
+        const std::vector<PaletteEntry> entries = palette_entries(world.model, typed);
+        REQUIRE_FALSE(entries.empty());
+        CHECK(entries.front().name == "Grow");
+        for (const PaletteEntry& entry : entries) CHECK_MESSAGE(entry.completion != "grow ", typed);
+        for (const PaletteEntry& entry : entries)
+            CHECK_MESSAGE(entry.why_not.find("group is missing") == std::string::npos, typed);
+    }
+    // Words are no arguments: how a script is written is not said.
+    for (const PaletteEntry& entry : palette_entries(world.model, "group xyzzy"))
+        CHECK(entry.why_not.find("argument") == std::string::npos);
+    world.session.groups[4].name = "vessel";
+    CHECK(palette_entries(world.model, "group vessel").front().name == "Group 4 vessel");
+    // For scripts.
+    const auto first = [&](const char* text) { return palette_entries(world.model, text).front(); };
+    CHECK(first("grow group=1 distance=x").why_not.find("distance") != std::string::npos);
+    CHECK(text_of(*first("Look_From camera=top").action) == text_of(LookFrom{"top"}));
+    CHECK(first("LOOK_F").completion == "look_from ");
+    CHECK(first("Light.Ambient=0.4").action->as<Set>()->patch == R"({"light":{"ambient":0.4}})");
+    CHECK_FALSE(palette_entries(world.model, "=").empty());  // the key of a shortcut
 }
 
 TEST_CASE("Groups are stepped through with those in use, and a new one is the first without anything")
