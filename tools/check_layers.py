@@ -92,7 +92,7 @@ MAY_INCLUDE = {
     "engine/workbench/actions": "engine/base engine/remote engine/annotation/operations engine/annotation/script engine/session engine/tasks engine/workbench/models",
     "engine/workbench/lists": "engine/base engine/volume engine/look engine/annotation/trace engine/session engine/live "
     "engine/workbench/models engine/workbench/actions",
-    "engine/workbench/forms": "engine/base engine/remote engine/volume engine/movie engine/tasks engine/workbench/models engine/workbench/actions "
+    "engine/workbench/forms": "engine/base engine/remote engine/volume engine/session/looks engine/movie engine/tasks engine/workbench/models engine/workbench/actions "
     "engine/workbench/sight",
     "engine/workbench/sight": "engine/base engine/volume engine/look engine/annotation/operations engine/annotation/trace engine/session engine/session/words engine/workbench/models "
     "engine/workbench/lists",
@@ -138,7 +138,7 @@ MAY_INCLUDE = {
     "tests/reference tools/golden tools/report",
     "tools/golden": "engine/base engine/annotation/script engine/session engine/live engine/pages shaders",
     "tools": "engine/base engine/remote engine/pages engine/pieces engine/ranks engine/volume engine/graph engine/gpu engine/projects engine/annotation/script engine/annotation/trace "
-    "engine/annotation/work engine/annotation/writers engine/session engine/session/meshes engine/jobs engine/tasks engine/movie engine/picture engine/live "
+    "engine/annotation/work engine/annotation/writers engine/session engine/session/looks engine/session/meshes engine/jobs engine/tasks engine/movie engine/picture engine/live "
     "haptics haptics/devices haptics/hid ui engine/study engine/study/report engine/workbench "
     "engine/workbench/touch engine/workbench/lists engine/workbench/sight "
     "tools/golden tools/bench tools/report",

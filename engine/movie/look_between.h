@@ -21,7 +21,8 @@ Groups groups_between(const Groups& from, const Groups& to, double share);
 /// `from`.
 Light light_between(const Light& from, const Light& to, double share);
 
-/// Returns `from` with what movies mix: transfer function, groups, unpainted voxels, light, distance blending, and cut.
+/// Returns `from` with what movies mix (KeyLook): transfer function, groups, unpainted voxels, light, distance
+/// blending, and cut. Size, background, quality, panes, probe, meshes and measurements remain those of `from`.
 Session session_between(const Session& from, const Session& to, double share, const VolumeInfo& volume);
 
 }  // namespace shvr

@@ -9,6 +9,7 @@ void take_kept_sections(Session& to, const Session& from)
 {
     to.cameras = from.cameras;
     to.camera_name = from.camera_name;
+    to.key_looks = from.key_looks;
     to.render = from.render;
     to.view = from.view;
     to.interaction = from.interaction;
@@ -23,6 +24,7 @@ void set_kept_settings(Session& session, const SettingValues& values)
         session.cameras = read.cameras;
         session.camera_name = read.camera_name;
     }
+    if (has("key_looks")) session.key_looks = read.key_looks;
     if (has("render")) {
         const RenderSettings before = session.render;
         session.render = read.render;

@@ -1,8 +1,8 @@
 #pragma once
 // The settings of a session that are restored on opening but are neither undoable nor part of the work: cameras and the
-// current camera, rendering, panes, the window's settings, probe and brush. Together with the lasting settings
-// (lasting_settings.h) they cover every setting that a user can change. The journal stores both (Work::keep_settings).
-// Any thread.
+// current camera, looks kept with views, rendering, panes, the window's settings, probe and brush. Together with the
+// lasting settings (lasting_settings.h) they cover every setting that a user can change. The journal stores both
+// (Work::keep_settings). Any thread.
 
 #include "engine/annotation/settings.h"
 #include "engine/session/session.h"

@@ -150,6 +150,17 @@ struct MeshLook {
     bool operator==(const MeshLook&) const = default;
 };
 
+/// What movies mix between two views besides their cameras (engine/movie/look_between.h). A view may be kept with it.
+struct KeyLook {
+    TransferFunction transfer_function;
+    Groups groups;
+    Unpainted unpainted;
+    Light light;
+    DistanceBlend blend;
+    CutBox cut;
+    bool operator==(const KeyLook&) const = default;
+};
+
 struct Session {
     std::filesystem::path volume_path;  ///< absolute, or empty if `procedural` is set
     std::optional<ProceduralSpec> procedural;
@@ -160,6 +171,7 @@ struct Session {
     std::string volume_hash;
     std::map<std::string, CameraSpec> cameras;  ///< by name; may be empty
     std::string camera_name;                    ///< name of the current camera, or JSON (camera_named); may be empty
+    std::map<std::string, KeyLook> key_looks;   ///< by the name of a view; may be empty (looks/key_look.h)
     TransferFunction transfer_function;
     std::string transfer_preset;  ///< preset name; `open_session` converts it into a function and clears it
     Groups groups;

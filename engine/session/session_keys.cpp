@@ -203,6 +203,18 @@ void volume_fields(Fields& f, Session& session)
 
 // ---- transfer_function, groups, probe, surfaces, annotation ---------------------------------------------------------
 
+}  // namespace
+
+void points_field(Fields& f, TransferFunction& function, const About& about)
+{
+    const std::span<const ControlPoint> before = function.points();
+    std::vector<ControlPoint> points(before.begin(), before.end());
+    f.list("points", points, SIZE_MAX, about);
+    if (!std::ranges::equal(points, before)) function = TransferFunction(std::move(points));
+}
+
+namespace {
+
 void transfer_fields(Fields& f, Session& session)
 {
     const About points_about{.meaning =
@@ -222,10 +234,7 @@ void transfer_fields(Fields& f, Session& session)
         f.check("preset", !f.has("points", false), "either points or a preset");
         return f.text("preset", session.transfer_preset, preset_about);
     }
-    const std::span<const ControlPoint> before = session.transfer_function.points();
-    std::vector<ControlPoint> points(before.begin(), before.end());
-    f.list("points", points, SIZE_MAX, points_about);
-    if (!std::ranges::equal(points, before)) session.transfer_function = TransferFunction(std::move(points));
+    points_field(f, session.transfer_function, points_about);
     f.mention("preset", preset_about);
 }
 
@@ -586,6 +595,7 @@ void lasting_fields(Fields& f, Session& session)
 void kept_fields(Fields& f, Session& session)
 {
     f.section("cameras", [&](Fields& cameras) { camera_fields(cameras, session); });
+    key_look_fields(f, session, true);  // journals must state that the last look was removed
     f.section("render", [&](Fields& render) {
         rendering_fields(render, session.render);
         for (const std::string_view key : PICTURE_KEYS) render.mention(key, {});  // older journals have these keys here
@@ -607,6 +617,7 @@ void fields(Fields& f, Session& session)
     f.section("volume", [&](Fields& volume) { volume_fields(volume, session); },
               {.meaning = "one of the three forms below", .allowed = "object", .is_required = true});
     camera_fields(f, session);
+    key_look_fields(f, session, false);
     look_fields(f, session);
     f.section("render", session.render);
     f.section("view", session.view);

@@ -48,6 +48,11 @@ void fields(Fields& f, Camera& camera);
 void fields(Fields& f, SideView& view);
 /// Fields of `session.camera_name` (a name, or an object as text) and of `session.cameras`.
 void camera_fields(Fields& f, Session& session);
+/// The control points of a transfer function.
+void points_field(Fields& f, TransferFunction& function, const About& about);
+void fields(Fields& f, KeyLook& look);
+/// The field of `session.key_looks`. `writes_none`: whether it is written where there are none.
+void key_look_fields(Fields& f, Session& session, bool writes_none);
 
 /// A row of the table in README.md.
 struct SessionKey {

@@ -1,4 +1,4 @@
-// The keys of cameras in a session file.
+// The keys of cameras, and of the looks kept with them, in a session file.
 
 #include <algorithm>
 #include <cmath>
@@ -122,6 +122,45 @@ void camera_fields(Fields& f, Session& session)
     std::string list;
     for (const std::string& name : known) list += (list.empty() ? "one of \"" : ", \"") + name + "\"";
     f.check("camera", known.contains(session.camera_name), list);
+}
+
+void fields(Fields& f, KeyLook& look)
+{
+    const Fields::Visit points = [&](Fields& function) {
+        points_field(function, look.transfer_function, {.meaning = "control points", .is_required = true});
+    };
+    f.section("transfer_function", points, {.is_required = true});
+    fields(f, look.groups);
+    f.section("unpainted", look.unpainted);
+    f.section("light", look.light);
+    f.section("blend", look.blend);
+    f.section("cut", look.cut);
+}
+
+void key_look_fields(Fields& f, Session& session, bool writes_none)
+{
+    const auto read = [&](const JsonNode& node) {
+        session.key_looks.clear();
+        for (const std::string& view : node.names())
+            read_fields(node[view], {}, [&](Fields& look) { fields(look, session.key_looks[view]); });
+    };
+    const auto written = [&]() -> std::optional<std::string> {
+        if (session.key_looks.empty() && !writes_none) return {};
+        std::string text;
+        for (auto& [view, kept] : session.key_looks) {
+            KeyLook& look = kept;
+            text += (text.empty() ? "{" : ",") + nlohmann::json(view).dump() + ":" +
+                    write_fields({}, [&look](Fields& each) { fields(each, look); });
+        }
+        return text.empty() ? "{}" : text + "}";
+    };
+    f.other("key_looks", read, written,
+            {.meaning =
+                 "looks kept with views, by the view's name: what movies show from its camera, and mix on the way to "
+                 "other views. Each has `transfer_function` (with `points`), and `groups`, `unpainted`, `light`, "
+                 "`blend` and `cut`, with the keys and defaults that they have here",
+             .allowed = "object of objects",
+             .standard = "none"});
 }
 
 }  // namespace shvr

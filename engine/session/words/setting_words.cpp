@@ -40,6 +40,7 @@ constexpr SectionRow SECTIONS[] = {
     {"interaction", "interaction", "what the window shows"},
     {"probe", "probe", "brush and probe"},
     {"cameras", "cameras", "the saved views"},
+    {"key_looks", "key_looks", "the looks kept with views"},
 };
 
 SectionRow section_named(std::string_view name)

@@ -66,6 +66,19 @@ class Frames(MovieTest):
         self.assertEqual(len(set(frames)), 5)
         self.assertEqual(self.movie("b", "--keys", views, frames=5)[0], frames)
 
+    def test_a_name_stands_for_the_look_that_was_kept_with_it(self):
+        look = {key: TOP[key] for key in ("cut", "groups", "transfer_function")}
+        self.session = self.write_session(
+            volume={"procedural": "tubes", "size": [24, 24, 24]}, render={"size": [24, 18]},
+            cameras={"mine": {"side": "left", "zoom": 1.5}}, key_looks={"mine": look})
+        frames, _ = self.movie("a", "--keys", "front,mine", frames=3)
+        as_set = [word for key, value in look.items() for word in ("--set", f"{key}={json.dumps(value)}")]
+        self.assertEqual(frames[0], self.picture())
+        self.assertEqual(frames[2], self.picture("--camera", "mine", *as_set))
+        self.assertEqual(len(set(frames)), 3)
+        again, _ = self.movie("b", "--keys", 'front,{"camera":"mine","light":{"ambient":0.9}}', frames=2)
+        self.assertEqual(again[1], self.picture("--camera", "mine", *as_set, "--set", "light.ambient=0.9"))
+
     def test_each_look_changes_between_views(self):
         # Frames in the middle, from one camera: neither view, and other ones if only one look differs.
         middles = set()

@@ -36,6 +36,7 @@ const std::map<std::string, std::string> NOT_KEPT{
 /// A setting of each section that a person may change.
 const std::vector<std::string> CHANGES{"camera=top",
                                        "cameras.mine.side=left",
+                                       R"(key_looks.mine={"transfer_function":{"points":[]},"cut":{"lower":[1,2,3]}})",
                                        "render.step_voxels=0.25",
                                        "view.arrangement=slices",
                                        "interaction.frames_per_second=7",

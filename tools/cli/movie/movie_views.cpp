@@ -7,6 +7,7 @@
 #include "engine/base/json.h"
 #include "engine/base/text.h"
 #include "engine/session/label_looks.h"
+#include "engine/session/looks/key_look.h"
 #include "engine/session/picture_session.h"
 #include "engine/session/session_patch.h"
 #include "engine/session/transfer_presets.h"
@@ -168,6 +169,7 @@ MovieView view_of(const StatedView& view, const Opened& opened, const std::strin
         result.camera = camera_named(stated, stated.camera_name, volume);
         return result;
     }
+    session = with_key_look(std::move(session), view.camera);
     if (!view.patch.empty()) {
         Session stated = patched(session, view.patch);
         const Json patch = Json::parse(view.patch);

@@ -21,7 +21,7 @@ struct StatedView {
 
 /// Reads views separated by commas, which do not count within braces, brackets and quotes:
 ///
-///   NAME         a camera of the session or a side
+///   NAME         a camera of the session, with the look that was kept with it, or a side
 ///   {...}        a camera, or settings of the session with or without "camera"
 ///   FILE.json    either of these, or a session
 ///   FILE.png     a picture that holds its session
