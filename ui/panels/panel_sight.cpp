@@ -18,6 +18,8 @@ void kept_view(const std::string& name, const Model& model, Actions& actions)
     static std::string edited;
     if (ImGui::IsWindowAppearing()) edited = name;
     if (ImGui::MenuItem("Go there")) actions.push_back(LookFrom{name});
+    if (model.session.key_looks.contains(name) && ImGui::MenuItem("Go there with its look"))
+        actions.push_back(LookFrom{name, true});
     ImGui::SetNextItemWidth(10.0f * ImGui::GetFontSize());
     const bool is_entered = ImGui::InputText("##name", &edited, ImGuiInputTextFlags_EnterReturnsTrue);
     ImGui::SameLine();
@@ -40,6 +42,7 @@ void kept_views_menu(const Model& model, Actions& actions)
 {
     if (!begin_menu("Kept views", model.is_open)) return;
     shortcut_item("keep_view", model, actions);
+    shortcut_item("keep_view_for_movie", model, actions);
     ImGui::Separator();
     for (const auto& [name, camera] : model.session.cameras) {
         if (name == "window" || !begin_menu(name.c_str())) continue;

@@ -1,6 +1,8 @@
 #include "engine/workbench/actions/conditions.h"
 
 #include <algorithm>
+#include <sstream>
+#include <variant>
 
 #include "engine/workbench/models/model.h"
 
@@ -84,6 +86,24 @@ std::string why_not_own(const Model& model, const std::string& name)
 {
     const auto is_it = [&](const TransferPreset& preset) { return preset.is_own && preset.name == name; };
     return std::ranges::any_of(model.presets, is_it) ? "" : sentence("no transfer function is kept as ", name);
+}
+
+std::string why_not_through(const Model& model, const std::string& views)
+{
+    const auto projection_of = [&](const std::string& view) {
+        const auto kept = model.session.cameras.find(view);
+        const Camera* const camera = kept == model.session.cameras.end() ? nullptr : std::get_if<Camera>(&kept->second);
+        return camera ? camera->projection : Camera::Projection::perspective;  // as sides are
+    };
+    std::istringstream lines(views);
+    std::string first;
+    for (std::string view; std::getline(lines, view);) {
+        if (first.empty()) first = view;
+        if (projection_of(view) != projection_of(first))
+            return sentence(view, " is ", spelled(projection_of(view)), ", and ", first, " is ",
+                            spelled(projection_of(first)), "; expected views of the same projection");
+    }
+    return {};
 }
 
 }  // namespace shvr::ui

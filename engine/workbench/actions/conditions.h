@@ -26,5 +26,7 @@ std::string why_without_group(const Model& model, uint8_t group);
 std::string why_not_operated(const Model& model, const GroupOperation& operation);
 /// `name`: name of a transfer function; those that ship cannot be changed, only those that the user saved.
 std::string why_not_own(const Model& model, const std::string& name);
+/// Condition of a movie that goes through views, named one per line: they need the same projection.
+std::string why_not_through(const Model& model, const std::string& views);
 
 }  // namespace shvr::ui

@@ -34,12 +34,14 @@ struct DragInMap {
 };
 
 struct LookFrom {
-    std::string camera;  ///< name of one of the session's cameras, or of a side of the volume
+    std::string camera;      ///< name of one of the session's cameras, or of a side of the volume
+    bool with_look = false;  ///< also shows the look that was kept with the camera
 };
 
 /// Stores the current view as a camera of the session, replacing a camera of this name. Empty: chooses an unused name.
 struct KeepCamera {
     std::string name;
+    bool with_look = false;  ///< also stores what movies mix (KeyLook)
 };
 
 struct ForgetCamera {
@@ -111,6 +113,15 @@ struct UpdateOcclusion {};  ///< computes ambient occlusion now, for use while a
 
 inline constexpr const char* LOOKING_GROUP = "Looking";
 
+/// Lines state it only where it is true.
+template <class Visitor>
+void look_flag(Visitor& f, bool& with_look)
+{
+    std::optional<bool> flag = with_look ? std::optional(true) : std::nullopt;
+    f.any_flag("with_look", flag, {"the transfer function, groups, light, blending and cut, too"});
+    with_look = flag.value_or(false);
+}
+
 inline constexpr auto LOOKING_ACTIONS = std::tuple{
     row<Orbit, Viewer>(
         {"orbit", "Turn the view", LOOKING_GROUP, "turns the camera about its target, to the right and up"},
@@ -137,11 +148,24 @@ inline constexpr auto LOOKING_ACTIONS = std::tuple{
                                pixel_field(f, "pixels", a.pixels);
                            }),
     row<LookFrom, Viewer>(
-        {"look_from", "Look from", LOOKING_GROUP, "takes a camera of the session, or a side of the volume"},
-        [](auto& f, LookFrom& a) { f.text("camera", a.camera, {.is_required = true}); }),
+        {"look_from", "Look from", LOOKING_GROUP,
+         "takes a camera of the session, or a side of the volume; on request with the look that was kept with it"},
+        [](auto& f, LookFrom& a) {
+            f.text("camera", a.camera, {.is_required = true});
+            look_flag(f, a.with_look);
+        },
+        [](const auto& model, const LookFrom& action) -> std::string {
+            return !action.with_look || model.session.key_looks.contains(action.camera)
+                       ? ""
+                       : sentence("no look is kept with the view ", action.camera);
+        }),
     row<KeepCamera, Viewer>(
-        {"keep_camera", "Keep this view", LOOKING_GROUP, "keeps the present view in the session, under a name"},
-        [](auto& f, KeepCamera& a) { f.text("name", a.name, {}); }),
+        {"keep_camera", "Keep this view", LOOKING_GROUP,
+         "keeps the present view in the session, under a name; on request with its look, which movies mix"},
+        [](auto& f, KeepCamera& a) {
+            f.text("name", a.name, {});
+            look_flag(f, a.with_look);
+        }),
     row<ForgetCamera, Viewer>(
         {"forget_camera", "Forget a view", LOOKING_GROUP, "removes a camera of the session"},
         [](auto& f, ForgetCamera& a) { f.text("name", a.name, {.is_required = true}); },

@@ -43,7 +43,7 @@ struct MovieTask {
     static constexpr const char* TITLE = "Movie";
 
     std::filesystem::path path;  ///< .webm, .mp4, or a folder for frames
-    std::string views;           ///< names of views, one per line; empty: the present one
+    std::string views;           ///< names of views, with looks kept with them, one per line; empty: the present one
     double turntable_degrees = 0.0;
     int frames = 120;
     double frames_per_second = 30.0;
@@ -112,7 +112,8 @@ inline constexpr auto PICTURE_ACTIONS = std::tuple{
         [](auto& f, MovieTask& a) {
             f.path("path", a.path,
                    {.meaning = "the movie: .webm, .mp4, or a folder for frames as .png", .is_required = true});
-            f.text("views", a.views, {"names of views to go through, one per line; empty: the present one"});
+            f.text("views", a.views,
+                   {"names of views to go through, one per line, with looks kept with them; empty: the present one"});
             f.number("turntable_degrees", a.turntable_degrees, {-360'000.0, 360'000.0},
                      {"degrees by which the volume turns"});
             f.whole("frames", a.frames, 1, 100'000, {"number of pictures"});
@@ -123,9 +124,9 @@ inline constexpr auto PICTURE_ACTIONS = std::tuple{
         [](const auto& model, const MovieTask& task) -> std::string {
             if (is_drawing_picture(model)) return IS_DRAWING_PICTURE;
             const bool goes = task.views.find('\n') != std::string::npos;
-            return goes || task.turntable_degrees != 0.0 ? ""
-                                                         : "a movie of one view that does not rotate stands still; "
-                                                           "expected degrees, or at least two views";
+            if (!goes && task.turntable_degrees == 0.0)
+                return "a movie of one view that does not rotate stands still; expected degrees, or at least two views";
+            return why_not_through(model, task.views);
         })};
 
 }  // namespace shvr::ui

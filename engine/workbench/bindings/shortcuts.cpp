@@ -469,6 +469,9 @@ constexpr Shortcut SHORTCUTS[] = {
     both(
         "keep_view", VIEWS_KEYS, "Keep this view", Mode::tap,
         [](const Model&, double) -> Action { return KeepCamera{}; }, "Ctrl+D"),
+    both(
+        "keep_view_for_movie", VIEWS_KEYS, "Keep this view for a movie", Mode::tap,
+        [](const Model&, double) -> Action { return KeepCamera{.name = {}, .with_look = true}; }, "Ctrl+Shift+D"),
     {"kept_view_1", VIEWS_KEYS, "Kept view 1", Mode::tap, look_from_kept<1>, {"Shift+1", ""}},
     {"kept_view_2", VIEWS_KEYS, "Kept view 2", Mode::tap, look_from_kept<2>, {"Shift+2", ""}},
     {"kept_view_3", VIEWS_KEYS, "Kept view 3", Mode::tap, look_from_kept<3>, {"Shift+3", ""}},

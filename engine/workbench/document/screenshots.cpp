@@ -33,17 +33,20 @@ Screenshots::Turn Screenshots::advance(Screen& screen, const std::filesystem::pa
         if (written_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return {};
         return {.said = written_.get(), .progress = {}};
     }
-    const bool was_held = screen.is_held();  // a large picture sets the view while it waits for bricks
-    screen.hold(false);
-    if (!screen.complete() && !was_held) return {};
+    // A large picture sets the view while it waits for bricks, and the light while it has a look of its own. If the
+    // screen then renewed the light for its own look between parts, each would undo the other's work.
+    const bool was_held = screen.is_held();
+    screen.hold(was_held && large_ && large_->has_own_look() && !is_wanted_);
+    if (!screen.complete() && (!was_held || is_wanted_)) return {};
     if (screen.complete() && std::exchange(is_wanted_, false)) {
         write(screen.read_back(), stem, texts, figure());
         return {};
     }
     if (!large_ || !is_still) return {};
     const Turn turn = advance_large();
-    screen.hold(large_ && large_->is_waiting());
-    return screen.is_held() ? Turn{} : turn;  // nothing new to tell
+    const bool waits = large_ && large_->is_waiting();
+    screen.hold(waits || (large_ && large_->has_own_look()));
+    return waits ? Turn{} : turn;  // nothing new to tell
 }
 
 Screenshots::Turn Screenshots::advance_large()

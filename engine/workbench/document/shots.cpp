@@ -58,14 +58,14 @@ std::string PictureShot::progress_in_words() const
 }
 
 MovieShot::MovieShot(const std::filesystem::path& path, Movie movie, double frames_per_second, Renderer& renderer,
-                     const RenderOptions& options, FigureOf figure, TextsOf texts)
+                     const RenderOptions& options, Calls calls, bool has_own_look)
     : Shot(path),
       movie_(std::move(movie)),
       renderer_(renderer),
       size_(movie_.views().front().session.render.size),
       options_(options),
-      figure_of_(std::move(figure)),
-      texts_of_(std::move(texts))
+      calls_(std::move(calls)),
+      has_own_look_(has_own_look)
 {
     if (is_movie_file(path)) {
         check_movie_file(path, size_);
@@ -84,11 +84,12 @@ bool MovieShot::is_writing() const
 void MovieShot::begin_frame()
 {
     const Movie::Frame frame = movie_.frame(index_);
-    figure_ = std::make_shared<const Figure>(figure_of_(frame.camera));
+    groups_ = frame.session.groups;
+    figure_ = std::make_shared<const Figure>(calls_.figure_of(frame));
     if (!encoder_) {
         const std::filesystem::path path = path_ / frame_file(index_, movie_.frames());
         file_ = std::make_unique<PictureFile>(path, renderer_, frame.session, frame.camera, options_,
-                                              texts_of_(frame.camera, path), drawn_over(figure_));
+                                              calls_.texts_of(frame, path), drawn_over(figure_));
         return;
     }
     job_ = std::make_unique<PictureJob>(renderer_, frame.session, frame.camera, options_,
@@ -131,7 +132,7 @@ void MovieShot::step()
     }
     if (!job_ && !file_) return begin_frame();
     if (file_ ? file_->is_drawn() : job_->is_done()) return end_frame();
-    file_ ? file_->step(false) : job_->step(false);
+    calls_.draw_with(groups_, [this] { file_ ? file_->step(false) : job_->step(false); });
 }
 
 double MovieShot::progress() const

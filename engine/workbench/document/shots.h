@@ -27,6 +27,8 @@ public:
     virtual bool is_writing() const = 0;
     /// Whether bricks are awaited; others may draw meanwhile.
     virtual bool is_waiting() const = 0;
+    /// Whether it shows other looks than the window, so that the scene's ambient occlusion follows it.
+    virtual bool has_own_look() const { return false; }
     /// Draws the next part, or completes the file. Fails if it cannot be made.
     virtual void step() = 0;
     virtual double progress() const = 0;
@@ -80,15 +82,20 @@ private:
 /// The frames of a movie, in a file or in a folder.
 class MovieShot final : public Shot {
 public:
-    /// Called for each frame, in order.
-    using FigureOf = std::function<Figure(const Camera& camera)>;
-    using TextsOf = std::function<PictureTexts(const Camera& camera, const std::filesystem::path& frame)>;
-    /// `texts`: stored in the frames of a folder.
+    struct Calls {
+        /// What is drawn over a frame; called for each, in order.
+        std::function<Figure(const Movie::Frame& frame)> figure_of;
+        /// What is stored in the file of a frame.
+        std::function<PictureTexts(const Movie::Frame& frame, const std::filesystem::path& path)> texts_of;
+        /// Calls `draw` while the trace has the colours of these groups.
+        std::function<void(const Groups& groups, const std::function<void()>& draw)> draw_with;
+    };
     MovieShot(const std::filesystem::path& path, Movie movie, double frames_per_second, Renderer& renderer,
-              const RenderOptions& options, FigureOf figure, TextsOf texts);
+              const RenderOptions& options, Calls calls, bool has_own_look);
 
     bool is_writing() const override;
     bool is_waiting() const override { return job_ ? job_->is_waiting() : file_ && file_->is_waiting(); }
+    bool has_own_look() const override { return has_own_look_; }
     void step() override;
     double progress() const override;
     std::string name() const override { return "movie"; }
@@ -105,8 +112,9 @@ private:
     Renderer& renderer_;
     glm::uvec2 size_;
     RenderOptions options_;
-    FigureOf figure_of_;
-    TextsOf texts_of_;
+    Calls calls_;
+    bool has_own_look_;
+    Groups groups_;  ///< the present frame's
     int index_ = 0;  ///< frames that are finished
     bool is_complete_ = true, is_committing_ = false;
     std::optional<FrameFolder> folder_;

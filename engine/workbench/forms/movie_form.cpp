@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/base/text.h"
 #include "engine/movie/frame_folder.h"
 #include "engine/movie/movie.h"
 #include "engine/movie/movie_encoder.h"
+#include "engine/session/looks/key_look.h"
 #include "engine/tasks/task_output.h"
 #include "engine/workbench/forms/form_names.h"
 
@@ -38,6 +40,8 @@ MovieForm suggested_movie(const Model& model, const MovieForm& last)
 {
     MovieForm form = last;
     form.path = form.suggested = base_of(model).string() + "-movie";
+    form.keeps_shown = false;
+    if (form.suggested != last.suggested) form.offered.clear();  // another scan's
     choose_kind(form, last.kind);
     const MovieForm fresh;  // for numbers that were refused when the dialog was closed
     if (!has_length(form)) form.seconds = fresh.seconds, form.more.frames_per_second = fresh.more.frames_per_second;
@@ -45,7 +49,47 @@ MovieForm suggested_movie(const Model& model, const MovieForm& last)
     form.elements = suggested_elements(model, last.elements);
     const std::vector<std::string> names = camera_names(model.session);
     std::erase_if(form.views, [&](const std::string& view) { return std::ranges::find(names, view) == names.end(); });
+    offer_kept_looks(form, model.session);
     return form;
+}
+
+void offer_kept_looks(MovieForm& form, const Session& session)
+{
+    const auto has = [](const std::vector<std::string>& names, const std::string& name) {
+        return std::ranges::find(names, name) != names.end();
+    };
+    std::erase_if(form.offered, [&](const std::string& view) { return !session.key_looks.contains(view); });
+    std::vector<std::string> added;
+    for (const auto& [view, look] : session.key_looks)
+        if (session.cameras.contains(view) && !has(form.offered, view)) added.push_back(view);
+    // "view 10" comes after "view 9".
+    std::ranges::sort(added, {}, [](const std::string& view) { return std::pair(view.size(), view); });
+    for (const std::string& view : added) {
+        form.offered.push_back(view);
+        if (!has(form.views, view)) form.views.push_back(view);
+        form.goes_through_views = true;
+    }
+}
+
+void move_up(MovieForm& form, size_t view)
+{
+    if (view > 0 && view < form.views.size()) std::swap(form.views[view - 1], form.views[view]);
+}
+
+std::string change_between(const Session& session, const std::string& from, const std::string& to)
+{
+    const KeyLook a = key_look_of(session, from), b = key_look_of(session, to);
+    std::string words;
+    const auto add = [&](bool is_other, const char* part) {
+        if (is_other) words += (words.empty() ? "changes " : ", ") + std::string(part);
+    };
+    add(a.cut != b.cut, "cut");
+    add(a.transfer_function != b.transfer_function, "transfer function");
+    add(a.groups != b.groups, "groups");
+    add(a.unpainted != b.unpainted, "unpainted voxels");
+    add(a.light != b.light, "light");
+    add(a.blend != b.blend, "distance blending");
+    return words;
 }
 
 void choose_kind(MovieForm& form, MovieKind kind)

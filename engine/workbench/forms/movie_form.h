@@ -19,7 +19,9 @@ struct MovieForm {
     MovieKind kind = MovieKind::webm;
     bool goes_through_views = false;  ///< otherwise it turns
     double degrees = 360.0;
-    std::vector<std::string> views;  ///< in their order
+    std::vector<std::string> views;    ///< in their order
+    std::vector<std::string> offered;  ///< those kept with their looks that have been in `views`, also if removed since
+    bool keeps_shown = false;          ///< what the window shows is to be kept as the next view
     double seconds = 4.0;
     MovieTask more{.pixels = {1280, 720}};
     ElementsForm elements;
@@ -28,6 +30,12 @@ struct MovieForm {
 /// Returns a form for the present view, with a name next to the scan. `last`: choices to use again, except numbers that
 /// no movie can have.
 MovieForm suggested_movie(const Model& model, const MovieForm& last);
+/// Adds the views that were kept with their looks since the last call, so that the movie goes through them.
+void offer_kept_looks(MovieForm& form, const Session& session);
+/// Moves a view to the place of the one before it.
+void move_up(MovieForm& form, size_t view);
+/// Returns what a movie mixes on the way between two views besides the camera: "changes cut, light"; empty: nothing.
+std::string change_between(const Session& session, const std::string& from, const std::string& to);
 /// Chooses what is written, and suggests a name for it, unless another name was typed.
 void choose_kind(MovieForm& form, MovieKind kind);
 std::string why_not(const MovieForm& form);

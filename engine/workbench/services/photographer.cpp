@@ -1,11 +1,13 @@
 #include "engine/workbench/services/photographer.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <sstream>
 
 #include "engine/base/machine/clipboard.h"
 #include "engine/base/text.h"
 #include "engine/movie/movie.h"
+#include "engine/session/looks/key_look.h"
 #include "engine/session/picture_session.h"
 #include "engine/session/words/number_words.h"
 #include "engine/workbench/desk/declined.h"
@@ -212,30 +214,54 @@ void Photographer::act(const FigureTask& task)
     say_begun(sentence("A figure of ", size, " is drawn in the background"));
 }
 
+/// Draws while the trace, which the window's picture also shows, has the colours of these groups.
+void Photographer::draw_with(const Groups& groups, const std::function<void()>& draw) const
+{
+    const TraceGraph& trace = document_->annotator.document().trace;
+    const auto show = [&](const Groups& shown) { renderer_.scene().show_surfaces(document_->surfaces, trace, shown); };
+    if (trace.nodes().empty() || groups == document_->session.groups) return draw();
+    show(groups);
+    try {
+        draw();
+    } catch (const DeviceLost&) {
+        throw;  // the scene is lost, too
+    } catch (...) {
+        show(document_->session.groups);
+        throw;
+    }
+    show(document_->session.groups);
+}
+
 void Photographer::act(const MovieTask& task)
 {
     if (has_large()) decline(capitalised(IS_DRAWING_PICTURE));
     const Session session = session_of_pictures(pixels_of(task.pixels));
     std::vector<MovieView> views;
     for (const std::string& name : views_named_in(task.views))
-        views.push_back({name, session, camera_named(session, name, document_->volume())});
+        views.push_back({name, with_key_look(session, name), camera_named(session, name, document_->volume())});
     if (views.empty()) views.push_back({"the present view", session, document_->camera});
+    const bool has_own_look = std::ranges::any_of(
+        views, [&](const MovieView& view) { return key_look_of(view.session) != key_look_of(session); });
     Movie movie(std::move(views), task.turntable_degrees, task.frames, document_->volume());
     const FigureElements elements = elements_of(task.elements);
     std::string said = sentence("A movie of ", counted(task.frames, "frame"), " is drawn in the background");
     std::vector<std::string> left_out;
-    static_cast<void>(drawn_elements(elements, session, movie.frame(0).camera, left_out));
+    const Movie::Frame first = movie.frame(0);
+    static_cast<void>(drawn_elements(elements, first.session, first.camera, left_out));
     for (const std::string& each : left_out) said += "; " + each;
     const auto memory = std::make_shared<FigureMemory>();
-    const auto figure = [this, elements, session, memory](const Camera& camera) {
+    MovieShot::Calls calls;
+    calls.figure_of = [this, elements, memory](const Movie::Frame& frame) {
         std::vector<std::string> ignored;
-        return drawn_elements(elements, session, camera, ignored, memory.get());
+        return drawn_elements(elements, frame.session, frame.camera, ignored, memory.get());
     };
-    const auto texts = [this, session](const Camera& camera, const std::filesystem::path& frame) {
-        return shvr::texts_of_picture(session, camera, frame, project_of_pictures(), PictureProbe::none);
+    calls.texts_of = [this](const Movie::Frame& frame, const std::filesystem::path& path) {
+        return shvr::texts_of_picture(frame.session, frame.camera, path, project_of_pictures(), PictureProbe::none);
     };
+    calls.draw_with = [this](const Groups& groups, const std::function<void()>& draw) { draw_with(groups, draw); };
     screenshots_.take(std::make_unique<MovieShot>(task.path, std::move(movie), task.frames_per_second, renderer_,
-                                                  RenderOptions{.part_pixels = PART_PIXELS}, figure, texts));
+                                                  RenderOptions{.part_pixels = PART_PIXELS}, std::move(calls),
+                                                  has_own_look));
     say_begun(std::move(said), left_out.empty() ? Weight::done : Weight::warning);
 }
 

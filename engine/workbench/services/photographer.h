@@ -48,6 +48,7 @@ private:
     Figure drawn_elements(const FigureElements& elements, const Session& session, const Camera& camera,
                           std::vector<std::string>& left_out, FigureMemory* memory = nullptr) const;
     std::filesystem::path project_of_pictures() const;
+    void draw_with(const Groups& groups, const std::function<void()>& draw) const;
     Figure figure_of_picture(uint32_t scale) const;
     Screenshots::Texts texts_of_picture(const glm::uvec2& pixels, bool shows_probe) const;
 

@@ -6,6 +6,7 @@
 
 #include "engine/look/camera_motion.h"
 #include "engine/look/cut_corners.h"
+#include "engine/session/looks/key_look.h"
 #include "engine/session/words/number_words.h"
 #include "engine/workbench/actions/action_rows.h"
 #include "engine/workbench/desk/declined.h"
@@ -189,22 +190,35 @@ void Viewer::act(const DragInMap& action)
 
 void Viewer::act(const LookFrom& action)
 {
-    look_from(camera_named(document_->session, action.camera, document_->volume()));
-    say("Looking from " + action.camera);
+    const Camera camera = camera_named(document_->session, action.camera, document_->volume());
+    if (action.with_look) {
+        if (!document_->session.key_looks.contains(action.camera))
+            fail("no look is kept with the view '", action.camera, "'; expected one that was kept for a movie");
+        others_.take_session(with_key_look(document_->session, action.camera));
+    }
+    look_from(camera);
+    say(sentence("Looking from ", action.camera, action.with_look ? ", with its look" : ""));
 }
 
 void Viewer::act(const KeepCamera& action)
 {
     const std::string name = action.name.empty() ? free_camera_name(document_->session) : action.name;
-    document_->session.cameras[name] = document_->camera;
+    Session& session = document_->session;
+    session.cameras[name] = document_->camera;
+    if (action.with_look)
+        session.key_looks[name] = key_look_of(session);
+    else
+        session.key_looks.erase(name);
     others_.note_edit();
-    say("This view is kept as " + name);
+    say(sentence("This view is kept as ", name,
+                 action.with_look ? ", with its look; File > Movie... goes from view to view" : ""));
 }
 
 void Viewer::act(const ForgetCamera& action)
 {
     if (document_->session.cameras.erase(action.name) == 0)
         fail("no view is kept as '", action.name, "'; expected one of the session's cameras");
+    document_->session.key_looks.erase(action.name);
     if (document_->session.camera_name == action.name) document_->session.camera_name.clear();
     others_.note_edit();
     say("The view " + action.name + " is no longer kept");
@@ -220,6 +234,12 @@ void Viewer::act(const RenameCamera& action)
     auto renamed = cameras.extract(action.name);
     renamed.key() = action.to;
     cameras.insert(std::move(renamed));
+    std::map<std::string, KeyLook>& looks = document_->session.key_looks;
+    looks.erase(action.to);  // of a view that no longer exists
+    if (auto look = looks.extract(action.name)) {
+        look.key() = action.to;
+        looks.insert(std::move(look));
+    }
     if (document_->session.camera_name == action.name) document_->session.camera_name = action.to;
     others_.note_edit();
     say("The view " + action.name + " is now called " + action.to);

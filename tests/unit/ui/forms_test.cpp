@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/annotation/trace/trace_file.h"
+#include "engine/session/looks/key_look.h"
 #include "engine/tasks/import_estimate.h"
 #include "engine/workbench/actions/action_rows.h"
 #include "engine/workbench/forms/export_form.h"
@@ -487,6 +488,54 @@ TEST_CASE("a figure and a movie come back from their lines, and say what they ca
     CHECK(why_not(world.model, Action(still)).find("stands still") != std::string::npos);
     CHECK(why_not(world.model, Action(MovieTask{.path = "/a/m.webm", .turntable_degrees = 360.0})).empty());
     CHECK(why_not(world.model, Action(MovieTask{.path = "/a/m.webm", .views = "front\ntop"})).empty());
+}
+
+TEST_CASE("a movie does not go through views of different projections")
+{
+    Scanned world;
+    world.session.cameras["flat"] = Camera{.projection = Camera::Projection::orthographic};
+    world.session.cameras["mine"] = Camera{};
+    const auto refusal = [&](const char* views) {
+        return why_not(world.model, Action(MovieTask{.path = "/a/m.webm", .views = views}));
+    };
+    CHECK(refusal("mine\ntop") == "");
+    CHECK(refusal("top\nmine\nflat") ==
+          "flat is orthographic, and top is perspective; expected views of the same projection");
+}
+
+TEST_CASE("a movie goes through views that were kept with their looks, in the order of their numbers")
+{
+    Scanned world;
+    const auto keep = [&](const char* view, double upper) {
+        world.session.cameras[view] = Camera{};
+        world.session.key_looks[view] = key_look_of(world.session);
+        world.session.key_looks[view].cut.upper.x = upper;
+    };
+    world.session.cameras["view 3"] = Camera{};  // without a look
+    keep("view 10", 9.0);
+    keep("view 2", 64.0);
+    MovieForm form = suggested_movie(world.model, {});
+    CHECK(form.goes_through_views);
+    CHECK(form.views == std::vector<std::string>{"view 2", "view 10"});
+    CHECK(change_between(world.session, "view 2", "view 10") == "changes cut");
+    world.session.light.ambient = 0.9;
+    CHECK(change_between(world.session, "view 10", "top") == "changes cut, light");
+    CHECK(change_between(world.session, "view 3", "top").empty());
+    move_up(form, 1);
+    move_up(form, 0);
+    CHECK(task_of(form, "/scans").views == "view 10\nview 2");
+
+    // What was removed stays away; what is kept later follows.
+    form.views = {"view 10"};
+    keep("view 4", 5.0);
+    form = suggested_movie(world.model, form);
+    CHECK(form.views == std::vector<std::string>{"view 10", "view 4"});
+    world.session.cameras.erase("view 10");
+    world.session.key_looks.erase("view 10");
+    form = suggested_movie(world.model, form);
+    CHECK(form.views == std::vector<std::string>{"view 4"});
+    world.path = "/scans/root.session.json";
+    CHECK(suggested_movie(world.model, form).views == std::vector<std::string>{"view 4", "view 2"});
 }
 
 TEST_CASE("a movie has the frames of its seconds, and the ending of its format")

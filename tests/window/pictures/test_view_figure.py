@@ -1,4 +1,5 @@
 """Figures and movies by their dialogs: files, the clipboard, and their messages."""
+import json
 import os
 import struct
 import subprocess
@@ -124,6 +125,32 @@ class Figure(Seen):
         frames = sorted(os.listdir(folder))
         self.assertEqual(frames, ["frame-0001.png", "frame-0002.png", "frame-0003.png"])
         self.assertEqual({size_of(self.folder / folder / name) for name in frames}, {(64, 720)})
+
+    def test_a_movie_goes_through_what_was_shown(self):
+        session = self.write_ball(volume={"procedural": "sphere", "size": [32, 32, 32]})
+        self.open_scan(session, preferences={"hints_seen": 3, "keys": {"oblique_cut": {"keys": "T"}}})
+        self.do("mousemove", *self.middle(), pause_s=0)
+        self.check_key("Ctrl+Shift+D", "keep_camera")
+        self.see("This view is kept as view 1, with its look", "Status")
+        self.check_key("T", "oblique_cut")
+        self.show("Movie...", MOVIE)
+        self.see("view 1", MOVIE)
+        self.click_on("Add what is shown", MOVIE)
+        self.see("view 2", MOVIE)
+        self.see("changes cut", MOVIE)
+        self.click_on("WebM", MOVIE)
+        self.click_on("Frames as PNG", "##Combo_")
+        self.type_into("Length", "0.1", MOVIE)
+        self.type_into("Size", "64", MOVIE)
+        self.see("Draws 3 frames of 64 x 720 ", MOVIE)
+        self.press("Return")
+        self.until(lambda: any(" (3 frames, 64 x 720 pixels)" in seen["text"] for seen in self.seen()), "a movie")
+        action = next(line for line in self.done() if line["op"] == "movie")
+        self.assertEqual(action["views"], "view 1\nview 2")
+        self.finish()
+        self.assertEqual(list(json.loads(session.read_text())["key_looks"]), ["view 1", "view 2"])
+        frames = [path.read_bytes() for path in sorted(Path(action["path"]).iterdir())]
+        self.assertEqual(len(set(frames)), 3)
 
     def test_closing_waits_for_a_movie_with_ways_out(self):
         self.open_ball()

@@ -153,6 +153,8 @@ public:
             return;
         }
         const bool has_chooser = draw_form(form_, model, known_.scan, begins);
+        if constexpr (std::is_same_v<Form, MovieForm>)
+            if (std::exchange(form_.keeps_shown, false)) actions.push_back(KeepCamera{.name = {}, .with_look = true});
         const Task task = task_of(form_, base_of(model).parent_path());
         const std::string why = refusal(model, task);
         dialog_note(about(form_, model, known_.scan), why);

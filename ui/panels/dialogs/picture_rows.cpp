@@ -142,15 +142,32 @@ void kind_row(MovieForm& form)
     if (!has_ffmpeg) words_after("WebM and MP4 need the package ffmpeg");
 }
 
+/// Draws a view, and what changes on the way to it. Returns whether it is to be removed.
+bool view_row(MovieForm& form, size_t view, const Session& session)
+{
+    const std::string& name = form.views[view];
+    want_glyphs(name);
+    const bool is_removed = ImGui::SmallButton("Remove");
+    ImGui::SameLine();
+    ImGui::BeginDisabled(view == 0);
+    const bool is_moved = ImGui::SmallButton("Up");
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    ImGui::TextUnformatted(name.c_str());
+    if (view > 0)
+        if (const std::string change = change_between(session, form.views[view - 1], name); !change.empty())
+            words_after(change.c_str());
+    if (is_moved) move_up(form, view);
+    return is_removed;
+}
+
 void views_rows(MovieForm& form, const Model& model)
 {
+    offer_kept_looks(form, model.session);
     for (size_t i = 0; i < form.views.size(); ++i) {
         ImGui::PushID(int(i));
         field_name(i == 0 ? "Views" : "");
-        want_glyphs(form.views[i]);
-        const bool is_removed = ImGui::SmallButton("Remove");
-        ImGui::SameLine();
-        ImGui::TextUnformatted(form.views[i].c_str());
+        const bool is_removed = view_row(form, i, model.session);
         ImGui::PopID();
         if (is_removed) form.views.erase(form.views.begin() + std::ptrdiff_t(i--));
     }
@@ -161,7 +178,13 @@ void views_rows(MovieForm& form, const Model& model)
             if (ImGui::Selectable(name.c_str())) form.views.push_back(name);
         ImGui::EndCombo();
     }
-    hint("Saved views (View > Keep this view) and sides; the movie slows down at each.");
+    hint("Views that were kept (View > Kept views) and sides; the movie slows down at each.");
+    ImGui::SameLine();
+    form.keeps_shown = ImGui::Button("Add what is shown");
+    hint(
+        "Keeps the view with its cut, transfer function, groups, light and distance blending, which change on the way "
+        "from view to view. For the next one close this dialog, change the picture, and choose View > Kept views > "
+        "Keep this view for a movie.");
 }
 
 void motion_rows(MovieForm& form, const Model& model)

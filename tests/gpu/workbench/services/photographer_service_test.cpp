@@ -6,6 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/base/image_file.h"
+#include "engine/session/looks/key_look.h"
 #include "engine/session/picture_session.h"
 #include "engine/workbench/services/photographer.h"
 #include "tests/gpu/workbench/services/desk_with_scan.h"
@@ -18,6 +19,32 @@ namespace {
 
 struct PhotographerAlone : DeskWithScan {
     Photographer photographer{desk, {.pixels = [] { return glm::uvec2(48, 40); }, .stay_open = notes("stay_open")}};
+
+    void finish()
+    {
+        until([&] { photographer.advance(); }, [&] { return !photographer.has_large(); });
+    }
+    /// What the picture shows of the present look.
+    Image8 figure(const char* name)
+    {
+        photographer.act(FigureTask{.path = folder.path / name, .pixels = {24, 20}});
+        finish();
+        return read_png(folder.path / name);
+    }
+    void keep(const char* view)
+    {
+        document().session.cameras[view] = document().camera;
+        document().session.key_looks[view] = key_look_of(document().session);
+    }
+    /// The three frames of a movie through two views.
+    std::vector<Image8> frames(const char* name, const char* views)
+    {
+        photographer.act(MovieTask{.path = folder.path / name, .views = views, .frames = 3, .pixels = {24, 20}});
+        finish();
+        std::vector<Image8> frames;
+        for (int index = 0; index < 3; ++index) frames.push_back(read_png(folder.path / name / frame_file(index, 3)));
+        return frames;
+    }
 };
 
 }  // namespace
@@ -91,6 +118,47 @@ TEST_CASE_FIXTURE(PhotographerAlone, "photographer: a movie turns, and a cancell
     CHECK(photographer.cancel(PICTURE_JOB));
     CHECK(says("frame-0001.png is finished"));
     CHECK_THROWS_AS(photographer.act(MovieTask{.path = folder.path / "m", .views = "nowhere\nfront"}), Error);
+}
+
+TEST_CASE_FIXTURE(PhotographerAlone,
+                  "photographer: a movie goes from one kept look to the next, and ends with its picture")
+{
+    keep("whole");
+    const Image8 whole = figure("whole.png");
+    document().session.cut.upper.x = 20.0;
+    document().session.transfer_function =
+        TransferFunction({{.intensity = 40.0, .color = glm::dvec3(1.0, 0.0, 0.0), .opacity = 0.1},
+                          {.intensity = 200.0, .opacity = 0.6}});
+    keep("half");
+    const Image8 half = figure("half.png");
+    document().session.cut = {};  // what is shown while the movie is drawn does not matter
+    document().session.light.ambient = 0.9;
+    const std::vector<Image8> shown = frames("cut", "whole\nhalf");
+    CHECK((shown[0] == whole));
+    CHECK_FALSE((shown[1] == whole));
+    CHECK_FALSE((shown[1] == half));
+    CHECK((shown[2] == half));
+    const std::optional<PictureSession> kept = session_in_picture(folder.path / "cut" / "frame-0003.png");
+    REQUIRE(kept);
+    CHECK(parse_session(kept->text, folder.path, "frame").cut.upper.x == 20.0);
+    CHECK(document().session.cut == CutBox());
+}
+
+TEST_CASE_FIXTURE(PhotographerAlone,
+                  "photographer: the trace has the colours of each look in a movie, and its own after it")
+{
+    document().annotator.edit_trace("a node", {TraceNodeChange{0, {}, TraceNode{{20.0, 18.0, 16.0}, 14.0, 2}}});
+    renderer().scene().show_surfaces({}, trace(), document().session.groups);
+    const Image8 plain = figure("plain.png");
+    keep("plain");
+    document().session.groups[2].color = glm::dvec3(0.0, 0.0, 1.0);
+    keep("blue");
+    document().session.groups.erase(2);
+    const std::vector<Image8> shown = frames("trace", "plain\nblue");
+    CHECK((shown[0] == plain));
+    CHECK_FALSE((shown[1] == plain));
+    CHECK_FALSE((shown[2] == shown[1]));
+    CHECK((figure("after.png") == plain));
 }
 
 TEST_CASE_FIXTURE(PhotographerAlone, "photographer: a movie that fails keeps a window open that waits for it")

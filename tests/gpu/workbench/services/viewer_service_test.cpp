@@ -38,6 +38,30 @@ TEST_CASE_FIXTURE(ViewerAlone, "viewer: moving the camera is kept, and edits not
     CHECK(take_calls().empty());
 }
 
+TEST_CASE_FIXTURE(ViewerAlone,
+                  "viewer: a view is kept with its look, which goes where its name goes, and is shown on request")
+{
+    Session& session = document().session;
+    session.light.ambient = 0.8;
+    viewer.act(KeepCamera{.name = {}, .with_look = true});
+    CHECK(says("This view is kept as view 1, with its look; File > Movie..."));
+    viewer.act(KeepCamera{});
+    CHECK(session.key_looks.size() == 1);
+    session.light.ambient = 0.2;
+    viewer.act(LookFrom{"view 1"});
+    CHECK_FALSE(taken);
+    viewer.act(RenameCamera{"view 1", "stem"});
+    viewer.act(LookFrom{"stem", true});
+    REQUIRE(taken);
+    CHECK(taken->light.ambient == 0.8);
+    CHECK(contains(error_of([&] { viewer.act(LookFrom{"view 2", true}); }), "no look is kept"));
+    viewer.act(KeepCamera{"stem"});  // in its place, without a look
+    CHECK(session.key_looks.empty());
+    viewer.act(KeepCamera{"stem", true});
+    viewer.act(ForgetCamera{"stem"});
+    CHECK(session.key_looks.empty());
+}
+
 TEST_CASE_FIXTURE(ViewerAlone, "viewer: cutting planes go through the settings, which it does not change itself")
 {
     const Session before = document().session;
