@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cfloat>
 #include <limits>
+#include <string>
 
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
+
+#include "engine/base/text.h"
 
 namespace shvr::ui {
 
@@ -36,7 +39,33 @@ void allow_double_click(bool is_double)
     ImGui::GetIO().MouseDoubleClickTime = is_double ? std::numeric_limits<float>::max() : 0.0f;
 }
 
+#if IMGUI_VERSION_NUM >= 19110  // 1.91.1
+using ClipboardOwner = ImGuiContext;
+auto& clipboard_reader()
+{
+    return ImGui::GetPlatformIO().Platform_GetClipboardTextFn;
+}
+#else
+using ClipboardOwner = void;
+auto& clipboard_reader()
+{
+    return ImGui::GetIO().GetClipboardTextFn;
+}
+#endif
+
 }  // namespace
+
+void paste_in_one_line()
+{
+    static const char* (*clipboard)(ClipboardOwner*) = nullptr;
+    clipboard = clipboard_reader();
+    clipboard_reader() = [](ClipboardOwner* owner) -> const char* {
+        static std::string pasted;
+        const char* const text = clipboard(owner);
+        if (text) pasted = one_line(text);
+        return text ? pasted.c_str() : nullptr;
+    };
+}
 
 void init_imgui_vulkan(ImGui_ImplVulkan_InitInfo info, VkRenderPass pass)
 {

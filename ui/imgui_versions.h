@@ -22,6 +22,9 @@ namespace shvr::ui {
 
 /// Call after ImGui::CreateContext.
 void set_up_imgui_input();
+/// Pastes texts of several lines with blanks between them: fields have one line, and Dear ImGui would join the words at
+/// line ends. Call after ImGui_ImplGlfw_InitForVulkan.
+void paste_in_one_line();
 /// Reports a pressed or released key. `mods`: as in GLFW.
 void tell_imgui_key(GLFWwindow* window, int key, bool pressed, int mods);
 void tell_imgui_character(GLFWwindow* window, unsigned character);

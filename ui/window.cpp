@@ -177,6 +177,7 @@ Window::Window(const std::string& title, const glm::uvec2& size) : input_(std::m
     ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
     ImGui_ImplGlfw_InitForVulkan(input_->window, true);
     input_->listen_to_keys();
+    paste_in_one_line();
 }
 
 Window::~Window()

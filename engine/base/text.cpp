@@ -89,6 +89,16 @@ std::string_view take_line(std::string_view& rest)
     return line;
 }
 
+std::string one_line(std::string_view text)
+{
+    std::string whole;
+    while (!text.empty()) {
+        const std::string_view line = take_line(text);
+        if (!line.empty()) whole += (whole.empty() ? "" : " ") + std::string(line);
+    }
+    return whole;
+}
+
 std::optional<int64_t> whole_of(std::string_view word)
 {
     return parsed<int64_t>(word);

@@ -30,6 +30,9 @@ std::string in_quotes(std::string_view text);
 /// Removes the first line and its line end from `rest`, and returns the line. "\r\n" counts as one line end.
 std::string_view take_line(std::string_view& rest);
 
+/// The text without line ends: blanks between its lines that are not empty.
+std::string one_line(std::string_view text);
+
 std::optional<int64_t> whole_of(std::string_view word);
 std::optional<double> number_of(std::string_view word);  ///< may be NaN or infinite
 

@@ -1,6 +1,7 @@
 """Figures and movies by their dialogs: files, the clipboard, and their messages."""
 import json
 import os
+import shutil
 import struct
 import subprocess
 import sys
@@ -87,6 +88,21 @@ class Figure(Seen):
 
     def test_without_programs_the_dialogs_name_their_packages(self):
         self.open_ball(self.programs())
+    def test_lines_pasted_into_a_title_stay_words(self):
+        if not shutil.which("xclip"):
+            self.skipTest("xclip is not installed")
+        subprocess.run(["xclip", "-selection", "clipboard"], input="Bellis\nperennis", text=True, check=True,
+                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                       env={**os.environ, "DISPLAY": self.display.name})
+        self.open_ball()
+        self.show("Figure...", FIGURE)
+        self.type_into("Title", "", FIGURE)
+        self.press("Ctrl+V")
+        self.see("Bellis perennis", FIGURE)
+        self.press("Escape")
+        self.see_no_more("", FIGURE)
+        self.finish()
+
         self.show("Figure...", FIGURE)
         self.see("Copy picture needs xclip", FIGURE)
         self.press("Escape")
