@@ -95,7 +95,7 @@ MAY_INCLUDE = {
     "engine/workbench/forms": "engine/base engine/remote engine/volume engine/session/looks engine/movie engine/tasks engine/workbench/models engine/workbench/actions "
     "engine/workbench/sight",
     "engine/workbench/sight": "engine/base engine/volume engine/look engine/annotation/operations engine/annotation/trace engine/session engine/session/words engine/workbench/models "
-    "engine/workbench/lists",
+    "engine/workbench/actions engine/workbench/lists",
     "engine/workbench/edits": "engine/session haptics engine/workbench/touch engine/workbench/models "
     "engine/workbench/actions",
     "engine/workbench/bindings": "engine/base engine/remote engine/session engine/session/words engine/workbench/models engine/workbench/actions "
@@ -111,7 +111,7 @@ MAY_INCLUDE = {
     "engine/workbench/services": "engine/base engine/remote engine/look engine/movie engine/annotation/operations engine/annotation/work "
     "engine/session engine/session/meshes engine/session/looks engine/session/words engine/tasks engine/live "
     "engine/workbench/models engine/workbench/actions engine/workbench/lists engine/workbench/sight engine/workbench/edits "
-    "engine/workbench/words engine/workbench/document engine/workbench/desk engine/workbench/forms",
+    "engine/workbench/words engine/workbench/document engine/workbench/desk",
     "engine/workbench": "engine/base engine/workbench/actions engine/workbench/lists engine/workbench/desk "
     "engine/workbench/services",
     "ui/files": "engine/base engine/remote engine/formats",
@@ -125,7 +125,7 @@ MAY_INCLUDE = {
     "engine/workbench/edits engine/workbench/bindings ui/panels",
     "ui/panels/start": "engine/base engine/remote engine/workbench/models engine/workbench/bindings ui/files ui/thumbnails ui/panels",
     "ui/panels/banners": "engine/base engine/workbench/models engine/workbench/actions engine/workbench/forms ui/panels",
-    "ui/panels/dialogs": "engine/base engine/session engine/workbench/models engine/workbench/actions "
+    "ui/panels/dialogs": "engine/base engine/session engine/session/words engine/workbench/models engine/workbench/actions "
     "engine/workbench/lists engine/workbench/forms engine/tasks ui/files ui/thumbnails ui/panels ui/panels/tools",
     "ui/panels/touch": "engine/workbench/models engine/workbench/lists engine/workbench/edits engine/workbench/bindings "
     "engine/workbench/words ui/panels",
@@ -140,7 +140,7 @@ MAY_INCLUDE = {
     "tools": "engine/base engine/remote engine/pages engine/pieces engine/ranks engine/volume engine/graph engine/gpu engine/projects engine/annotation/script engine/annotation/trace "
     "engine/annotation/work engine/annotation/writers engine/session engine/session/looks engine/session/meshes engine/jobs engine/tasks engine/movie engine/picture engine/live "
     "haptics haptics/devices haptics/hid ui engine/study engine/study/report engine/workbench "
-    "engine/workbench/touch engine/workbench/lists engine/workbench/sight "
+    "engine/workbench/touch engine/workbench/actions engine/workbench/lists engine/workbench/sight "
     "tools/golden tools/bench tools/report",
 }
 # Rooms that must work without a device: none may include a room that depends on one, directly or indirectly.

@@ -16,9 +16,10 @@ const char *const SESSION_TEXT = "SHVR session", *const PROJECT_TEXT = "SHVR pro
 const char *const NO_OUTLINE = "none", *const POINT = "point";
 const char* const CAMERA_OF_PICTURE = "picture";
 
-bool is_picture_name(const fs::path& path)
+bool is_picture(const fs::path& path)
 {
-    return path.extension() == ".png" || is_tiff_name(path);
+    std::error_code ignored;
+    return (path.extension() == ".png" || is_tiff_name(path)) && fs::is_regular_file(path, ignored);
 }
 
 std::optional<std::string> text_in(const fs::path& picture, const char* keyword)
@@ -54,14 +55,18 @@ PictureTexts texts_of_picture(Session session, const Camera& camera, const fs::p
 
 PictureProbe probe_of_picture(const fs::path& picture)
 {
-    const std::optional<std::string> text = is_picture_name(picture) ? text_in(picture, OUTLINE_TEXT) : std::nullopt;
+    const std::optional<std::string> text = text_in_picture(picture, OUTLINE_TEXT);
     return text == NO_OUTLINE ? PictureProbe::plain : text == POINT ? PictureProbe::point : PictureProbe::as_rendered;
+}
+
+std::optional<std::string> text_in_picture(const fs::path& picture, const char* keyword)
+{
+    return is_picture(picture) ? text_in(picture, keyword) : std::nullopt;
 }
 
 std::optional<PictureSession> session_in_picture(const fs::path& picture)
 {
-    std::error_code ignored;
-    if (!fs::is_regular_file(picture, ignored) || !is_picture_name(picture)) return std::nullopt;
+    if (!is_picture(picture)) return std::nullopt;
     const std::optional<std::string> text = text_in(picture, SESSION_TEXT);
     if (!text && is_tiff_name(picture)) return std::nullopt;  // a volume
     if (!text)

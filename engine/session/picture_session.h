@@ -6,6 +6,7 @@
 //   "SHVR project"   the session file from which the picture was made, relative to the picture's folder; absent for a
 //                    bare volume. The journal next to the session file contains the annotation
 //   "SHVR outline"   "none" if the probe has no outline; "point" if it is a point without one
+//   "SHVR figure"    what is drawn over it (engine/workbench/actions/figure_text.h)
 //
 // A picture does not contain annotation. If annotation has changed since the picture was made, a new picture shows its
 // current state. Programs that re-encode pictures drop the text chunks. Any thread may call these.
@@ -29,6 +30,9 @@ PictureTexts texts_of_picture(Session session, const Camera& camera, const std::
                               const std::filesystem::path& project, PictureProbe probe);
 /// Returns how pictures rendered from this file show the probe; `as_rendered` unless it was taken in the window.
 PictureProbe probe_of_picture(const std::filesystem::path& picture);
+
+/// Returns the text with this keyword in a picture's file; null if there is none, or the file is no picture.
+std::optional<std::string> text_in_picture(const std::filesystem::path& picture, const char* keyword);
 
 struct PictureSession {
     std::string text;

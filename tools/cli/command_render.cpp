@@ -145,7 +145,7 @@ void run_render(RenderCommandOptions options)
     if (options.output.empty() == options.movie.path.empty())
         throw UsageError(options.output.empty() ? "--output is missing; expected -o for a picture, or --movie"
                                                 : "--output and --movie are given; expected one of them");
-    check_figure(options.figure);
+    check_figure(options.figure, options.input);
     if (!options.movie.path.empty() && !options.task.empty())
         throw UsageError("--task and --movie are given; expected one of them, since a movie is not split");
     if (!options.movie.path.empty()) {
@@ -185,7 +185,7 @@ void run_render(RenderCommandOptions options)
     PictureTexts texts = options.with_session
                              ? texts_of_picture(opened.session, camera, options.output, opened.project, kept_probe)
                              : PictureTexts();
-    add_resolution(texts, options.figure);
+    add_figure_texts(texts, options.figure);
     std::vector<std::string> left_out;
     const PictureFile::Over over = figure_over(options.figure, opened, opened.session, camera, left_out);
     if (job.is_task()) {
@@ -231,7 +231,8 @@ void add_render(CLI::App& program)
                         "Transfer function: a preset (bundles, viridis, ...), or a JSON file with its points");
     command->add_flag(
         "--with-session", options->with_session,
-        "Keep the session in the .png or .tif, so that it can be rendered again, as the window's pictures do");
+        "Keep the session in the .png or .tif, and what is drawn over it, so that it can be rendered again, as the "
+        "window's pictures do");
     add_figure_options(*command, options->figure);
     add_movie_options(*command, options->movie);
     add_task_option(*command, options->task);
@@ -246,9 +247,11 @@ void add_render(CLI::App& program)
         "show; --set render.detail=0 draws all voxels, as a resident volume always is. Either picture is complete:\n"
         "\"detail\" in --json tells which it is.\n\n"
         "--scale-bar, --color-bar, --legend, --axes, --measurements, --title and --text are drawn in black or white,\n"
-        "whichever stands out from the background; black on a transparent one. In perspective the scale bar holds in\n"
-        "the plane that its label names. Texts that do not fit are wrapped or shortened and other elements left out,\n"
-        "with a warning.\n\n"
+        "whichever stands out from the background, or over a scan in a slice from its dark air; black on a\n"
+        "transparent background. In perspective the scale bar holds at the camera's target, the middle of the view.\n"
+        "Texts that do not fit are wrapped or shortened and other elements left out, with a warning. A picture that\n"
+        "keeps its session keeps them, too. Rendered again, it has them again; if any is given then, only the given\n"
+        "ones, and with --no-elements none.\n\n"
         "A movie goes from view to view of --keys, slowing down at each: the camera turns the shortest way, and\n"
         "transfer function, groups, light and cuts change along. --turntable turns at constant speed about the\n"
         "axis of the volume that points upwards, with --keys in addition. Each run makes the same frames. A .webm or\n"

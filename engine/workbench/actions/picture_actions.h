@@ -18,12 +18,24 @@ struct TextInFigure {
     std::string text;
 };
 inline constexpr size_t MAX_FIGURE_TEXTS = 100;
+inline constexpr double MIN_TEXT_PIXELS = 6.0, MAX_TEXT_PIXELS = 1000.0;
 
 /// What publications need over a picture (engine/workbench/sight/figure_elements.h).
 struct DrawnElements {
-    bool has_scale_bar = false, has_color_bar = false, has_legend = false, has_axes = false, has_measurements = false;
+    bool has_scale_bar = false;  ///< in each view and slice: a line of a rounded length. In perspective its label says
+                                 ///< where it holds
+    bool has_color_bar = false;  ///< colours of the transfer function, and its opacity relative to its maximum
+    bool has_legend = false;     ///< colours and names of the groups that are drawn
+    bool has_axes = false;       ///< directions of x, y and z
+    bool has_measurements = false;  ///< in each view and slice: lines, names and values of the session's measurements
     std::string title;
     std::vector<TextInFigure> texts;
+    double text_pixels = 0.0;  ///< height of a line of text; 0: automatic_text_pixels()
+    bool is_empty() const
+    {
+        return !has_scale_bar && !has_color_bar && !has_legend && !has_axes && !has_measurements && title.empty() &&
+               texts.empty();
+    }
 };
 
 /// Draws the present view as a figure, with what publications need over it.
@@ -68,6 +80,7 @@ void size_field(Visitor& f, glm::ivec2& pixels)
     pixels = {int(values[0]), int(values[1])};
 }
 
+/// Without the height of texts, which only `shvr render` states.
 template <class Visitor>
 void element_fields(Visitor& f, DrawnElements& elements)
 {

@@ -81,18 +81,6 @@ std::string why_not(const FigureForm& form)
                     MAX_PRINT_DPI, " dots per inch");
 }
 
-FigureElements elements_of(const DrawnElements& drawn)
-{
-    FigureElements elements{.scale_bar = drawn.has_scale_bar,
-                            .color_bar = drawn.has_color_bar,
-                            .legend = drawn.has_legend,
-                            .axes = drawn.has_axes,
-                            .measurements = drawn.has_measurements,
-                            .title = drawn.title};
-    for (const TextInFigure& text : drawn.texts) elements.texts.push_back({text.voxel, text.text});
-    return elements;
-}
-
 FigureTask task_of(const FigureForm& form, const std::filesystem::path& folder)
 {
     FigureTask task = form.more;

@@ -36,8 +36,6 @@ ElementsForm suggested_elements(const Model& model, const ElementsForm& last);
 void add_text(ElementsForm& form);
 /// Returns what is drawn. A text that was typed is meant, also without Add.
 DrawnElements elements_of(const ElementsForm& form);
-/// Returns the elements of a task as they are drawn.
-FigureElements elements_of(const DrawnElements& drawn);
 
 struct FigureForm {
     std::string path;  ///< as typed

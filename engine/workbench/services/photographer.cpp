@@ -10,8 +10,8 @@
 #include "engine/session/looks/key_look.h"
 #include "engine/session/picture_session.h"
 #include "engine/session/words/number_words.h"
+#include "engine/workbench/actions/figure_text.h"
 #include "engine/workbench/desk/declined.h"
-#include "engine/workbench/forms/figure_form.h"
 #include "engine/workbench/lists/group_list.h"
 #include "engine/workbench/models/preferences.h"
 #include "engine/workbench/sight/print_size.h"
@@ -180,7 +180,7 @@ std::filesystem::path Photographer::project_of_pictures() const
     return has_project ? document_->session_path : std::filesystem::path();
 }
 
-Figure Photographer::drawn_elements(const FigureElements& elements, const Session& session, const Camera& camera,
+Figure Photographer::drawn_elements(const DrawnElements& elements, const Session& session, const Camera& camera,
                                     std::vector<std::string>& left_out, FigureMemory* memory) const
 {
     if (elements.is_empty() || !options_.draw_texts) return {};
@@ -199,9 +199,10 @@ void Photographer::act(const FigureTask& task)
     Session session = session_of_pictures(pixels_of(task.pixels));
     if (task.is_transparent) session.render.background.a = 0.0;
     std::vector<std::string> left_out;
-    Figure figure = drawn_elements(elements_of(task.elements), session, document_->camera, left_out);
+    Figure figure = drawn_elements(task.elements, session, document_->camera, left_out);
     PictureTexts texts =
         shvr::texts_of_picture(session, document_->camera, path, project_of_pictures(), PictureProbe::none);
+    add_elements(texts, task.elements);
     if (task.dots_per_inch > 0.0) texts.emplace_back(PICTURE_DPI, digits_of(task.dots_per_inch));
     const std::string size = size_of_figure(session.render.size, task.dots_per_inch);
     PictureShot::Words words{.name = "figure",
@@ -243,7 +244,7 @@ void Photographer::act(const MovieTask& task)
     const bool has_own_look = std::ranges::any_of(
         views, [&](const MovieView& view) { return key_look_of(view.session) != key_look_of(session); });
     Movie movie(std::move(views), task.turntable_degrees, task.frames, document_->volume());
-    const FigureElements elements = elements_of(task.elements);
+    const DrawnElements& elements = task.elements;
     std::string said = sentence("A movie of ", counted(task.frames, "frame"), " is drawn in the background");
     std::vector<std::string> left_out;
     const Movie::Frame first = movie.frame(0);
@@ -255,8 +256,11 @@ void Photographer::act(const MovieTask& task)
         std::vector<std::string> ignored;
         return drawn_elements(elements, frame.session, frame.camera, ignored, memory.get());
     };
-    calls.texts_of = [this](const Movie::Frame& frame, const std::filesystem::path& path) {
-        return shvr::texts_of_picture(frame.session, frame.camera, path, project_of_pictures(), PictureProbe::none);
+    calls.texts_of = [this, elements](const Movie::Frame& frame, const std::filesystem::path& path) {
+        PictureTexts kept =
+            shvr::texts_of_picture(frame.session, frame.camera, path, project_of_pictures(), PictureProbe::none);
+        add_elements(kept, elements);
+        return kept;
     };
     calls.draw_with = [this](const Groups& groups, const std::function<void()>& draw) { draw_with(groups, draw); };
     screenshots_.take(std::make_unique<MovieShot>(task.path, std::move(movie), task.frames_per_second, renderer_,

@@ -45,7 +45,7 @@ private:
     void follow_project_picture();
     glm::uvec2 pixels_of(const glm::ivec2& asked) const;
     Session session_of_pictures(const glm::uvec2& pixels) const;
-    Figure drawn_elements(const FigureElements& elements, const Session& session, const Camera& camera,
+    Figure drawn_elements(const DrawnElements& elements, const Session& session, const Camera& camera,
                           std::vector<std::string>& left_out, FigureMemory* memory = nullptr) const;
     std::filesystem::path project_of_pictures() const;
     void draw_with(const Groups& groups, const std::function<void()>& draw) const;

@@ -21,6 +21,7 @@ constexpr std::array<glm::dvec3, 3> AXIS_COLORS{glm::dvec3(0.8, 0.05, 0.03), glm
 constexpr double TITLE_SCALE = 1.3, TITLE_STEP = 1.2 * TITLE_SCALE;  ///< height and distance of its lines, in lines
 constexpr size_t MAX_TITLE_LINES = 3, MAX_TEXT_LINES = 5;
 constexpr size_t MAX_TICKS = 5;
+constexpr const char *VALUES = "Intensity", *OPACITY = "Opacity";  ///< captions of the colour bar
 
 /// Returns 1, 2 or 5 times a power of ten: the smallest step of which at most MAX_TICKS fit into `range`.
 double tick_step(double range)
@@ -41,13 +42,13 @@ std::string tick_in_words(double value)
 /// Draws the elements of one pane.
 class PaneFigure {
 public:
-    PaneFigure(const FigureElements& elements, const FigureScene& scene, const Pane& pane, double text_pixels,
+    PaneFigure(const DrawnElements& elements, const FigureScene& scene, const Pane& pane, double text_pixels,
                const TextDrawer& draw_texts, std::vector<std::string>& left_out)
         : elements_(elements),
           scene_(scene),
           pane_(pane),
           left_out_(left_out),
-          drawn_(pane.box, scene.session.render.background, text_pixels, draw_texts),
+          drawn_(pane, scene.volume, scene.session.render.background, text_pixels, draw_texts),
           line_(text_pixels),
           edge_(drawn_.edge()),
           size_(drawn_.size())
@@ -56,18 +57,18 @@ public:
     Figure::Part all(size_t index)
     {
         const bool is_first = index == 0;
-        if (elements_.scale_bar && pane_.kind != Pane::Kind::map) scale_bar();
+        if (elements_.has_scale_bar && pane_.kind != Pane::Kind::map) scale_bar();
         if (is_first) {
             if (!elements_.title.empty()) title();
-            if (elements_.axes) axes();
-            if (elements_.color_bar) color_bar();
-            if (elements_.legend) legend();
+            if (elements_.has_axes) axes();
+            if (elements_.has_color_bar) color_bar();
+            if (elements_.has_legend) legend();
         }
-        if (elements_.measurements && pane_.kind != Pane::Kind::map && !pane_.shot.right_eye)
+        if (elements_.has_measurements && pane_.kind != Pane::Kind::map && !pane_.shot.right_eye)
             draw_measurements(drawn_, pane_, scene_.session.measurements, scene_.volume,
                               scene_.memory ? &scene_.memory->at(index) : nullptr, is_first, left_out_);
         if (is_first) {
-            for (const FigureText& text : elements_.texts) text_at_point(text);
+            for (const TextInFigure& text : elements_.texts) text_at_point(text);
         }
         return drawn_.take_part();
     }
@@ -89,19 +90,20 @@ private:
         const double unit = pixel_size(camera, pane_.pixels(), glm::distance(camera.eye, camera.target));
         const ScaleBar bar = shvr::ui::scale_bar(unit, 0.3 * size_.x, scene_.volume.unit);
         if (bar.pixels < line_ || size_.y < 4.0 * line_) return leave_out("the scale bar");
-        std::string words = bar.text + (holds_at_one_depth ? ", in the plane of the target" : "");
+        std::string words = bar.text + (holds_at_one_depth ? HOLDS_AT_TARGET : "");
         const double room = size_.x - 2.0 * edge_;
-        if (holds_at_one_depth && drawn_.widest_of(std::span(&words, 1), line_) > room) {
+        if (holds_at_one_depth && width_of(words) > room) {
             words = bar.text;
-            left_out_.emplace_back(
-                "the scale bar holds in the plane of the target: the picture is too small to say it");
+            left_out_.push_back(
+                sentence("the scale bar holds", HOLDS_AT_TARGET, ": the picture is too small to say it"));
         }
-        const double words_width = drawn_.widest_of(std::span(&words, 1), line_);
+        const double words_width = width_of(words);
         if (words_width > room) return leave_out("the scale bar");
         const glm::dvec2 end(size_.x - edge_, size_.y - edge_), rim(drawn_.rim_width());
         const glm::dvec2 begin(end.x - bar.pixels, end.y - std::max(2.0, std::round(0.15 * line_)));
-        drawn_.rectangle(begin - rim, end + rim, drawn_.rim());
-        drawn_.rectangle(begin, end, drawn_.ink());
+        const FigurePane::Ink ink = drawn_.ink_at(0.5 * (begin + end));
+        drawn_.rectangle(begin - rim, end + rim, ink.rim);
+        drawn_.rectangle(begin, end, ink.color);
         // The words end with the bar, since they are often longer.
         const double above = begin.y - 0.2 * line_;
         drawn_.write({{{end.x, above}, {1.0, 1.0}, words}}, line_);
@@ -156,7 +158,7 @@ private:
         for (size_t i = 0; i < drawn; ++i) {
             const glm::dvec2 at = corner + glm::dvec2(0.0, next * double(i));
             const glm::dvec2 begin = at - glm::dvec2(square, 0.0), end = at + glm::dvec2(0.0, square);
-            drawn_.rectangle(begin - 1.0, end + 1.0, drawn_.ink());
+            drawn_.rectangle(begin - 1.0, end + 1.0, drawn_.ink_at(begin).color);
             drawn_.rectangle(begin, end, looks[i].color);
             words.push_back({begin + glm::dvec2(-0.5 * line_, 0.5 * square), {1.0, 0.5}, names[i]});
         }
@@ -178,12 +180,16 @@ private:
     }
     /// A vertical bar on the left side, in the middle where there is room, with up to MAX_TICKS + 1 numbers. The wider
     /// column has the colours, where they are not fully transparent; the narrower one's width is the opacity, relative
-    /// to its maximum.
+    /// to its maximum. The values' name is above it and the opacity's below its column, where there is room.
     void color_bar()
     {
         const TransferFunction& function = scene_.session.transfer_function;
         if (function.draws_nothing()) return leave_out("the colour bar", "the transfer function draws nothing");
-        const double above = below_title_ + 0.5 * line_, below = above_axes_ - 0.5 * line_;  // half a number
+        const double least = 4.0 * line_, caption = 1.1 * line_;
+        const double below = above_axes_ - 0.5 * line_;  // half a number
+        double above = below_title_ + 0.5 * line_;
+        const bool is_named = below - above >= least + caption && edge_ + width_of(VALUES) <= 0.5 * size_.x;
+        if (is_named) above += caption;
         const double height = std::round(std::min(0.4 * size_.y, below - above));
         const double lower = function.lower(), range = function.upper() - lower;
         const std::vector<Tick> ticks = ticks_of(lower, function.upper());
@@ -196,16 +202,28 @@ private:
         const double right = begin.x + colors.x + 1.0 + opacities.x;
         const Box box{begin - glm::dvec2(0.0, 0.5 * line_),
                       {right + 0.5 * line_ + widest, begin.y + height + 0.5 * line_}};
-        if (height < 4.0 * line_ || !drawn_.is_free(box)) return leave_out("the colour bar");
+        if (height < least || !drawn_.is_free(box)) return leave_out("the colour bar");
         fill_color_bar(begin, colors, opacities);
         std::vector<Words> numbers;
         for (const Tick& tick : ticks) {
             const double y = begin.y + height * (1.0 - (tick.value - lower) / range);
             const glm::dvec2 from(right + 1.0, y - 0.5), to = from + glm::dvec2(0.3 * line_, 1.0);
-            drawn_.rectangle(from, to, drawn_.ink());
+            drawn_.rectangle(from, to, drawn_.ink_at(from).color);
             numbers.push_back({{to.x + 0.2 * line_, y}, {0.0, 0.5}, tick.text});
         }
         drawn_.write(numbers, line_);
+        drawn_.take(box);
+        if (is_named) write_caption(VALUES, {begin.x, box.begin.y - caption});
+        const double left = right - 0.5 * (opacities.x + width_of(OPACITY));
+        write_caption(OPACITY, {std::max(left, edge_), box.end.y + caption - line_});
+    }
+    double width_of(const std::string& text) const { return drawn_.widest_of(std::span(&text, 1), line_); }
+    /// Writes a caption of the colour bar if its place is free, and not in the right half, where the legend may be.
+    void write_caption(const std::string& text, const glm::dvec2& begin)
+    {
+        const Box box{begin, begin + glm::dvec2(width_of(text), line_)};
+        if (box.end.x > 0.5 * size_.x || box.end.y > above_axes_ || !drawn_.is_free(box)) return;
+        drawn_.write({{begin, {0.0, 0.0}, text}}, line_);
         drawn_.take(box);
     }
     void fill_color_bar(const glm::dvec2& begin, const glm::dvec2& colors, const glm::dvec2& opacities)
@@ -214,15 +232,16 @@ private:
         const double lower = function.lower(), range = function.upper() - lower;
         double most = 0.0;
         for (const ControlPoint& point : function.points()) most = std::max(most, point.opacity);
-        drawn_.rectangle(begin - 1.0, begin + colors + 1.0, drawn_.ink());
+        const FigurePane::Ink ink = drawn_.ink_at(begin);
+        drawn_.rectangle(begin - 1.0, begin + colors + 1.0, ink.color);
         const glm::dvec2 beside = begin + glm::dvec2(colors.x + 1.0, 0.0);
-        drawn_.rectangle(beside, beside + opacities, drawn_.rim());
+        drawn_.rectangle(beside, beside + opacities, ink.rim);
         for (int row = 0; row < int(colors.y); ++row) {
             const glm::dvec4 look = function.at(lower + range * (1.0 - (row + 0.5) / colors.y));
             const glm::dvec2 down(0.0, row);
             drawn_.rectangle(begin + down, begin + down + glm::dvec2(colors.x, 1.0),
-                             look.a > 0.0 ? glm::dvec3(look) : drawn_.rim());
-            drawn_.rectangle(beside + down, beside + down + glm::dvec2(opacities.x * look.a / most, 1.0), drawn_.ink());
+                             look.a > 0.0 ? glm::dvec3(look) : ink.rim);
+            drawn_.rectangle(beside + down, beside + down + glm::dvec2(opacities.x * look.a / most, 1.0), ink.color);
         }
     }
 
@@ -249,7 +268,7 @@ private:
         above_axes_ = box.begin.y;
     }
 
-    void text_at_point(const FigureText& text)
+    void text_at_point(const TextInFigure& text)
     {
         const auto at = project(pane_.shot.camera, pane_.pixels(), text.voxel * scene_.volume.spacing);
         const bool is_inside = at && glm::all(glm::greaterThanEqual(at->pixel, glm::dvec2(0.0))) &&
@@ -262,8 +281,7 @@ private:
         // To the right of the point where there is room for it, so that it changes its side rarely in movies; on the
         // other side, or above or below, if something is there.
         const double right_room = size_.x - at->pixel.x - radius - 0.3 * line_;
-        const bool is_right =
-            drawn_.widest_of(std::span(&text.text, 1), line_) <= right_room || 2.0 * at->pixel.x < size_.x;
+        const bool is_right = width_of(text.text) <= right_room || 2.0 * at->pixel.x < size_.x;
         for (const double lines : {0.0, 1.0, -1.0, 2.0, -2.0, 3.0, -3.0, 4.0, -4.0}) {
             const glm::dvec2 place = at->pixel + glm::dvec2(0.0, lines * line_);
             for (const bool right : {is_right, !is_right})
@@ -299,7 +317,7 @@ private:
         return true;
     }
 
-    const FigureElements& elements_;
+    const DrawnElements& elements_;
     const FigureScene& scene_;
     const Pane& pane_;
     std::vector<std::string>& left_out_;
@@ -316,7 +334,7 @@ double automatic_text_pixels(const glm::uvec2& size)
     return std::max(10.0, std::round(double(std::min(size.x, size.y)) / 28.0));
 }
 
-Figure figure_of(const FigureElements& elements, const FigureScene& scene, const TextDrawer& draw_texts,
+Figure figure_of(const DrawnElements& elements, const FigureScene& scene, const TextDrawer& draw_texts,
                  std::vector<std::string>& left_out)
 {
     Figure figure;

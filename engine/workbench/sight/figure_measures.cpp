@@ -14,20 +14,20 @@ namespace {
 /// Widths, in lines of text.
 constexpr double SIDE = 0.1, ARC = 0.07, LEADER = 0.05, DOT_RADIUS = 0.15, AVOIDED_AROUND_DOTS = 0.5;
 
-/// Returns the label, its name shortened so that it fits into the width with the value.
-std::string fitted(const MeasureLabel& label, double width, const FigurePane& drawn, bool& is_shortened)
+/// Returns the label, its name shortened so that it fits into the width with the value; empty if the value is too wide.
+std::string fitted(const MeasureLabel& label, double width, const FigurePane& drawn)
 {
     const std::string whole = label.text();
-    const std::vector<std::string> parts{whole, ": " + label.value};
+    const std::vector<std::string> parts{whole, ": " + label.value, label.value};
     const std::vector<double> widths = widths_of(parts, drawn.line(), drawn.draw_texts());
     if (widths[0] <= width) return whole;
-    is_shortened = true;
+    if (widths[2] > width) return {};
     return MeasureLabel{shortened(label.name, width - widths[1], drawn.line(), drawn.draw_texts()), label.value}.text();
 }
 
-/// Writes labels of lines where they cover as little as possible. Returns the number of those that cover something.
-size_t write_labels(FigurePane& drawn, const std::vector<std::string>& texts, std::vector<LabelPlace> places,
-                    std::span<const LabelLine> lines, std::span<const size_t> keys, LabelMemory* memory)
+/// Writes labels next to their lines. Returns which of them are written: those that cover nothing.
+std::vector<bool> write_labels(FigurePane& drawn, const std::vector<std::string>& texts, std::vector<LabelPlace> places,
+                               std::span<const LabelLine> lines, std::span<const size_t> keys, LabelMemory* memory)
 {
     const double line = drawn.line();
     const glm::dvec2 margin = LABEL_MARGIN * (line / FONT_UNITS);
@@ -40,20 +40,21 @@ size_t write_labels(FigurePane& drawn, const std::vector<std::string>& texts, st
         sizes.push_back(box.end - box.begin);
     }
     spread_as_before(places, sizes, drawn.size(), lines, keys, memory);
-    size_t covering = 0;
+    std::vector<bool> is_written;
     std::vector<FigurePane::Words> words;
     std::vector<LabelLine> leaders;
     for (size_t i = 0; i < texts.size(); ++i) {
         const glm::dvec2 begin = places[i].at - places[i].anchor * sizes[i];
         const FigurePane::Box box{begin, begin + sizes[i]};
-        covering += !drawn.is_free(box);
+        is_written.push_back(drawn.is_free(box));
+        if (!is_written.back()) continue;
         drawn.take(box);
         words.push_back({begin + margin, {0.0, 0.0}, texts[i]});
         if (const auto leader = leader_of(before[i], places[i], sizes[i])) leaders.push_back(*leader);
     }
-    drawn.lines(leaders, drawn.ink(), std::max(1.0, LEADER * line));
+    drawn.lines(leaders, std::max(1.0, LEADER * line));
     drawn.write(words, line);
-    return covering;
+    return is_written;
 }
 
 }  // namespace
@@ -68,35 +69,42 @@ void draw_measurements(FigurePane& drawn, const Pane& pane, std::span<const Meas
     const double line = drawn.line();
     std::vector<LabelLine> sides, arcs;
     std::vector<LabelPlace> places;
-    std::vector<std::string> texts;
+    std::vector<std::string> wholes, texts;
     std::vector<size_t> keys;
-    bool is_shortened = false;
+    size_t seen = 0;
     for (size_t i = 0; i < all.size(); ++i) {
         const MeasureLines shown = lines_of(all[i], pane, volume, line / FONT_UNITS);
         sides.insert(sides.end(), shown.sides.begin(), shown.sides.end());
         arcs.insert(arcs.end(), shown.arc.begin(), shown.arc.end());
         if (!shown.label) continue;
-        places.push_back(*shown.label);
-        keys.push_back(i + 1);
+        ++seen;
         MeasureLabel label = label_of(all[i], i + 1, volume);
         label.value += shown.note;
-        texts.push_back(fitted(label, drawn.size().x - drawn.edge(), drawn, is_shortened));
+        std::string text = fitted(label, drawn.size().x - drawn.edge(), drawn);
+        if (text.empty()) continue;
+        places.push_back(*shown.label);
+        keys.push_back(i + 1);
+        wholes.push_back(label.text());
+        texts.push_back(std::move(text));
     }
-    if (is_shortened) left_out.emplace_back("names of measurements are shortened: the picture is too small for them");
-    if (is_first && pane.kind == Pane::Kind::main && places.size() < all.size())
-        left_out.push_back(sentence(counted(int64_t(all.size() - places.size()), "measurement"), " of ", all.size(),
+    if (is_first && pane.kind == Pane::Kind::main && seen < all.size())
+        left_out.push_back(sentence(counted(int64_t(all.size() - seen), "measurement"), " of ", all.size(),
                                     " cannot be seen: outside of the picture"));
-    drawn.lines(sides, drawn.ink(), std::max(1.5, SIDE * line));
-    drawn.lines(arcs, drawn.ink(), std::max(1.2, ARC * line));
+    drawn.lines(sides, std::max(1.5, SIDE * line));
+    drawn.lines(arcs, std::max(1.2, ARC * line));
     std::vector<LabelLine> avoided = sides;
     for (const LabelLine& side : sides)
         for (const glm::dvec2& end : {side.from, side.to}) {
             drawn.dot(end, DOT_RADIUS * line);
             avoided.push_back(avoided_around(end, AVOIDED_AROUND_DOTS * line));
         }
-    if (const size_t covering = write_labels(drawn, texts, std::move(places), avoided, keys, memory); covering > 0)
-        left_out.push_back(sentence(counted(int64_t(covering), "label"),
-                                    " of measurements cannot be read: the picture is too small for all of them"));
+    const std::vector<bool> is_written = write_labels(drawn, texts, std::move(places), avoided, keys, memory);
+    bool is_shortened = false;
+    for (size_t i = 0; i < texts.size(); ++i) is_shortened = is_shortened || (is_written[i] && texts[i] != wholes[i]);
+    if (is_shortened) left_out.emplace_back("names of measurements are shortened: the picture is too small for them");
+    if (const ptrdiff_t missing = ptrdiff_t(seen) - std::ranges::count(is_written, true); missing > 0)
+        left_out.push_back(sentence(counted(missing, "label"), " of measurements ", missing == 1 ? "is" : "are",
+                                    " left out: the picture is too small for ", missing == 1 ? "it" : "all of them"));
 }
 
 }  // namespace shvr::ui

@@ -15,13 +15,20 @@ constexpr uint8_t OPAQUE = 255;
 
 }  // namespace
 
-FigurePane::FigurePane(const PixelBox& box, const glm::dvec4& background, double line, const TextDrawer& draw_texts)
-    : size_(box.end - box.begin), line_(line), draw_texts_(draw_texts), part_{.box = box, .strokes = {}, .stamps = {}}
+FigurePane::FigurePane(const Pane& pane, const VolumeInfo& volume, const glm::dvec4& background, double line,
+                       const TextDrawer& draw_texts)
+    : pane_(pane),
+      volume_(volume),
+      background_(background),
+      size_(pane.pixels()),
+      line_(line),
+      draw_texts_(draw_texts),
+      part_{.box = pane.box, .strokes = {}, .stamps = {}}
+{}
+
+FigurePane::Ink FigurePane::ink_at(const glm::dvec2& pixel) const
 {
-    const double luminance = glm::dot(glm::dvec3(background), glm::dvec3(0.2126, 0.7152, 0.0722));
-    const bool is_light = background.a < 0.5 || luminance > 0.18;  // transparent pictures are put on paper
-    ink_ = is_light ? BLACK : WHITE;
-    rim_ = is_light ? WHITE : BLACK;
+    return is_light_at(pixel, pane_, volume_, background_) ? Ink{BLACK, WHITE} : Ink{WHITE, BLACK};
 }
 
 double FigurePane::rim_width() const
@@ -56,19 +63,22 @@ void FigurePane::rectangle(const glm::dvec2& begin, const glm::dvec2& end, const
 
 void FigurePane::line(const glm::dvec2& from, const glm::dvec2& to, const glm::dvec3& color, double width)
 {
-    const LabelLine drawn{from, to};
-    lines(std::span(&drawn, 1), color, width);
+    part_.strokes.push_back({from, to, ink_at(0.5 * (from + to)).rim, width + 2.0 * rim_width()});
+    part_.strokes.push_back({from, to, color, width});
 }
 
-void FigurePane::lines(std::span<const LabelLine> drawn, const glm::dvec3& color, double width)
+void FigurePane::lines(std::span<const LabelLine> drawn, double width)
 {
-    for (const LabelLine& each : drawn) part_.strokes.push_back({each.from, each.to, rim_, width + 2.0 * rim_width()});
-    for (const LabelLine& each : drawn) part_.strokes.push_back({each.from, each.to, color, width});
+    const auto ink_of = [&](const LabelLine& each) { return ink_at(0.5 * (each.from + each.to)); };
+    for (const LabelLine& each : drawn)
+        part_.strokes.push_back({each.from, each.to, ink_of(each).rim, width + 2.0 * rim_width()});
+    for (const LabelLine& each : drawn) part_.strokes.push_back({each.from, each.to, ink_of(each).color, width});
 }
 
 void FigurePane::dot(const glm::dvec2& middle, double radius)
 {
-    line(middle, middle + glm::dvec2(0.01, 0.0), ink_, 2.0 * radius);
+    const LabelLine drawn{middle, middle + glm::dvec2(0.01, 0.0)};
+    lines(std::span(&drawn, 1), 2.0 * radius);
 }
 
 void FigurePane::write(const std::vector<Words>& words, double height)
@@ -78,12 +88,13 @@ void FigurePane::write(const std::vector<Words>& words, double height)
     std::vector<TextImage> images = draw_texts_(texts, height);
     for (size_t i = 0; i < words.size(); ++i) {
         const glm::dvec2 begin = words[i].at - words[i].anchor * glm::dvec2(images[i].pixels);
-        Stamp ink{.begin = glm::ivec2(glm::round(begin)),
-                  .pixels = images[i].pixels,
-                  .coverage = std::move(images[i].coverage),
-                  .color = ink_};
-        part_.stamps.push_back(rim_of(ink, int(rim_width()), rim_));
-        part_.stamps.push_back(std::move(ink));
+        const Ink ink = ink_at(begin + 0.5 * glm::dvec2(images[i].pixels));
+        Stamp text{.begin = glm::ivec2(glm::round(begin)),
+                   .pixels = images[i].pixels,
+                   .coverage = std::move(images[i].coverage),
+                   .color = ink.color};
+        part_.stamps.push_back(rim_of(text, int(rim_width()), ink.rim));
+        part_.stamps.push_back(std::move(text));
     }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Draws the shapes and texts of figure elements over one pane, in black or white, whichever stands out from the
-// background, with a thin rim in the other, and keeps track of what is taken. Any thread, except for texts.
+// Draws the shapes and texts of figure elements over one pane, in black or white, whichever stands out from what is
+// behind (is_light_at), with a thin rim in the other, and keeps track of what is taken. Any thread, except for texts.
 
 #include <span>
 #include <string>
@@ -21,16 +21,19 @@ public:
         glm::dvec2 at, anchor;
         std::string text;
     };
+    struct Ink {
+        glm::dvec3 color, rim;
+    };
 
     /// `line`: height of a line of text. `background`: linear light, and its opacity.
-    FigurePane(const PixelBox& box, const glm::dvec4& background, double line, const TextDrawer& draw_texts);
+    FigurePane(const Pane& pane, const VolumeInfo& volume, const glm::dvec4& background, double line,
+               const TextDrawer& draw_texts);
 
     glm::dvec2 size() const { return size_; }
     double line() const { return line_; }
     double edge() const { return 0.8 * line_; }  ///< distance of elements from the picture's edge
     double rim_width() const;
-    const glm::dvec3& ink() const { return ink_; }
-    const glm::dvec3& rim() const { return rim_; }
+    Ink ink_at(const glm::dvec2& pixel) const;
     const TextDrawer& draw_texts() const { return draw_texts_; }
 
     /// Whether the box lies within the pane and off all boxes that are taken.
@@ -40,9 +43,10 @@ public:
 
     /// A rectangle with fractional sides: pixels at its borders are partly covered.
     void rectangle(const glm::dvec2& begin, const glm::dvec2& end, const glm::dvec3& color);
+    /// `color`: with the rim of the ink there.
     void line(const glm::dvec2& from, const glm::dvec2& to, const glm::dvec3& color, double width);
-    /// Draws lines whose rims lie below all of them.
-    void lines(std::span<const LabelLine> drawn, const glm::dvec3& color, double width);
+    /// Draws lines whose rims lie below all of them, each in the ink at its middle.
+    void lines(std::span<const LabelLine> drawn, double width);
     void dot(const glm::dvec2& middle, double radius);
     void write(const std::vector<Words>& words, double height);
     /// Returns the width in pixels of the widest text, if its line is `height` pixels high.
@@ -51,10 +55,12 @@ public:
     Figure::Part take_part() { return std::move(part_); }
 
 private:
+    const Pane& pane_;
+    const VolumeInfo& volume_;
+    glm::dvec4 background_;
     glm::dvec2 size_;
     double line_;
     const TextDrawer& draw_texts_;
-    glm::dvec3 ink_, rim_;
     Figure::Part part_;
     std::vector<Box> taken_;
 };

@@ -27,6 +27,15 @@ double luminance_of(const glm::dvec3& linear)
     return glm::dot(linear, glm::dvec3(0.2126, 0.7152, 0.0722));
 }
 
+/// Whether the scan is there in a slice, rather than the background around it.
+bool is_over_scan(const glm::dvec2& pixel, const Pane& slice, const VolumeInfo& volume)
+{
+    const auto corner = [&](const glm::dvec3& point) { return project(slice.shot.camera, slice.pixels(), point); };
+    const auto a = corner(glm::dvec3(0.0)), b = corner(glm::dvec3(volume.size) * volume.spacing);
+    return a && b && glm::all(glm::greaterThan(pixel, glm::min(a->pixel, b->pixel))) &&
+           glm::all(glm::lessThan(pixel, glm::max(a->pixel, b->pixel)));
+}
+
 class Drawing {
 public:
     Drawing(const Model& model, const Pane& pane, size_t index, double units, MarksFor purpose)
@@ -136,16 +145,7 @@ private:
     /// Returns a colour that stands out from the background, or in slices from the scan's dark air.
     glm::dvec3 ink_at(const glm::dvec2& pixel) const
     {
-        const glm::dvec4& background = model_.session.render.background;
-        const bool is_light = background.a < 0.5 || luminance_of(glm::dvec3(background)) > 0.18;
-        return is_light && !(is_slice() && is_over_scan(pixel)) ? DARK : LIGHT;
-    }
-    /// Whether the scan is there in a slice, rather than the background around it.
-    bool is_over_scan(const glm::dvec2& pixel) const
-    {
-        const auto a = pixel_of(glm::dvec3(0.0)), b = pixel_of(glm::dvec3(model_.volume.size) * model_.volume.spacing);
-        return a && b && glm::all(glm::greaterThan(pixel, glm::min(*a, *b))) &&
-               glm::all(glm::lessThan(pixel, glm::max(*a, *b)));
+        return is_light_at(pixel, pane_, model_.volume, model_.session.render.background) ? DARK : LIGHT;
     }
 
     /// Draws the outline of the brush where it intersects the plane of the pane.
@@ -354,8 +354,7 @@ private:
         rectangle(begin - rim, end + rim, rim_color(ink), 5.0 * units_);
         rectangle(begin, end, ink, 3.0 * units_);
         marks_.lines.push_back({begin, end});
-        label(end - glm::dvec2(0.0, 5.0 * units_), {1.0, 1.0},
-              bar.text + (is_perspective ? " at the middle of the view" : ""));
+        label(end - glm::dvec2(0.0, 5.0 * units_), {1.0, 1.0}, bar.text + (is_perspective ? HOLDS_AT_TARGET : ""));
     }
 
     /// Lists the groups that are painted or traced, in the upper right corner of the first pane. Each colour stands to
@@ -440,6 +439,12 @@ private:
 };
 
 }  // namespace
+
+bool is_light_at(const glm::dvec2& pixel, const Pane& pane, const VolumeInfo& volume, const glm::dvec4& background)
+{
+    const bool is_light = background.a < 0.5 || luminance_of(glm::dvec3(background)) > 0.18;
+    return is_light && !(pane.kind == Pane::Kind::slice && is_over_scan(pixel, pane, volume));
+}
 
 glm::dvec3 rim_color(const glm::dvec3& ink)
 {

@@ -27,6 +27,9 @@ struct Label {
     glm::dvec2 away{0.0};   ///< as in LabelPlace
     size_t key = 0;         ///< identifies what it names in each frame; 0: none
 };
+/// Whether dark ink stands out at a pixel of a pane: on a light background, and not over the scan in a slice, whose air
+/// is dark. Transparent backgrounds count as light: they are put on paper.
+bool is_light_at(const glm::dvec2& pixel, const Pane& pane, const VolumeInfo& volume, const glm::dvec4& background);
 /// Texts over pictures have a rim, so that they can be read on any picture: dark around a light ink, else light. Its
 /// width in pixels, for a font of this height.
 glm::dvec3 rim_color(const glm::dvec3& ink);

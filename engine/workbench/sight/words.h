@@ -32,6 +32,8 @@ struct ScaleBar {
     std::string text;  ///< "200 µm"
 };
 ScaleBar scale_bar(double units_per_pixel, double longest_pixels, const std::string& unit);
+/// Stands behind the length in a perspective, where the bar holds at one depth: that of the camera's target.
+inline constexpr const char* HOLDS_AT_TARGET = " at the middle of the view";
 
 /// Returns a name, cut to 32 characters of UTF-8 and "..." if it is longer.
 std::string shortened_name(const std::string& name);

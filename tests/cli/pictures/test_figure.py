@@ -53,13 +53,13 @@ class Figure(CliTest):
             self.assertEqual([color == BLACK for color in rows[y]], expected)
         self.assertTrue(all(color == WHITE for y in range(SIDE - EDGE, SIDE) for color in rows[y]))
         self.assertTrue(any(color != WHITE for y in range(SIDE - EDGE - 14, SIDE - EDGE - 3) for color in rows[y]))
-        # The words of a perspective, which name the plane, are longer, where there is room for them.
+        # The words of a perspective, which say where it holds, are longer, where there is room for them.
         size = ["--size", "320x96"]
         blank = self.picture(*size)
         wide, narrow = (changed(blank, self.picture("--scale-bar", *size, camera=camera)) for camera in ("front", FLAT))
         self.assertLess(wide[0], narrow[0])
         small = changed(self.picture(), self.picture("--scale-bar", camera="front", warnings=[
-            "the scale bar holds in the plane of the target: the picture is too small to say it"]))
+            "the scale bar holds at the middle of the view: the picture is too small to say it"]))
         self.assertGreaterEqual(small[0], EDGE - 1)
 
     def test_words_are_wrapped_or_shortened_and_never_cut_off(self):
@@ -159,7 +159,9 @@ class Figure(CliTest):
         blank = self.picture("--size", f"{side}x{side}", *function)
         rows = self.picture("--size", f"{side}x{side}", "--color-bar", *function)
         left, top, right, bottom = changed(blank, rows)
-        self.assertTrue(left == EDGE - 1 and side / 4 < top and bottom < 3 * side / 4, (left, top, right, bottom))
+        # Captions are above and below the bar, which is 48 pixels high.
+        self.assertTrue(left == EDGE - 1 and side / 8 < top < side / 4, (left, top, right, bottom))
+        self.assertTrue(3 * side / 4 < bottom < 7 * side / 8, (left, top, right, bottom))
         x = EDGE + 6
         first = (side - height) // 2
         for row in range(height):
@@ -221,6 +223,34 @@ class Figure(CliTest):
         self.check("render", tiff, "-o", again)
         self.check("render", session, "-o", direct, "--camera", "left")
         self.check("compare", again, direct, "--max-abs", "0")
+
+    def test_a_picture_that_is_rendered_again_has_its_elements(self):
+        elements = ["--scale-bar", "--color-bar", "--axes", "--title", "Bellis\nperennis", "--text", "6,12,18:stem",
+                    "--text-pixels", "12"]
+        size = ["--size", "240x200", *self.function("0")]
+
+        def render(source, name, *arguments):
+            self.check("render", source, "-o", self.folder / name, *arguments)
+            return self.folder / name
+
+        def check_same(a, b):
+            self.check("compare", a, b, "--max-abs", "0")
+
+        direct = render(self.session, "direct.png", "--camera", "left", *size, *elements)
+        for name in ("kept.png", "kept.tif"):
+            kept = render(self.session, name, "--camera", "left", *size, *elements, "--with-session")
+            check_same(render(kept, "again.png"), direct)
+        plain = render(self.session, "plain.png", "--camera", "left", *size)
+        self.assertNotEqual(plain.read_bytes(), direct.read_bytes())
+        check_same(render(kept, "none.png", "--no-elements"), plain)
+        titled = render(self.session, "titled.png", "--camera", "left", *size, "--title", "other")
+        check_same(render(kept, "replaced.png", "--title", "other"), titled)
+        self.check("render", kept, "--movie", self.folder / "m", "--frames", "2", "--turntable", "90", "--with-session")
+        check_same(self.folder / "m" / "frame-0001.png", direct)
+        last = self.folder / "m" / "frame-0002.png"
+        check_same(render(last, "frame.png"), last)
+        self.check_refused("render", plain, "-o", self.folder / "x.png", "--text-pixels", "12", status=2,
+                           says=["without anything to draw"])
 
     def test_frames_of_a_movie_have_the_same_elements(self):
         elements = ["--title", "turn", "--scale-bar", "--axes", "--size", "48x48"]

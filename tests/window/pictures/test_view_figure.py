@@ -18,6 +18,16 @@ def size_of(png):
     return struct.unpack(">II", png.read_bytes()[16:24])
 
 
+def pixels_in(png):
+    """The compressed pixels: the same for equal pictures."""
+    content, at, found = png.read_bytes(), 8, b""
+    while at < len(content):
+        length, kind = struct.unpack(">I4s", content[at:at + 8])
+        found += content[at + 8:at + 8 + length] if kind == b"IDAT" else b""
+        at += length + 12
+    return found
+
+
 class Figure(Seen):
     def open_ball(self, environment=None):
         session = self.write_ball(volume={"procedural": "sphere", "size": [32, 32, 32]})
@@ -41,22 +51,24 @@ class Figure(Seen):
         self.open_ball()
         self.show("Figure...", FIGURE)
         self.see("Draws 1004 x ", FIGURE)
-        self.do("key", "ctrl+a", "type", "--delay", 30, "leaf.tif", pause_s=0)
-        self.see("leaf.tif", FIGURE)
+        self.do("key", "ctrl+a", "type", "--delay", 30, "leaf.png", pause_s=0)
+        self.see("leaf.png", FIGURE)
         self.click_on("Legend", FIGURE)
+        self.see("The legend is left out", FIGURE)
         self.press("Return")
         self.see_no_more("", FIGURE)
-        self.until(lambda: any("leaf.tif (1004 x " in seen["text"] for seen in self.seen(window="Status")), "message")
+        self.until(lambda: any("leaf.png (1004 x " in seen["text"] for seen in self.seen(window="Status")), "message")
         action = next(line for line in self.done() if line["op"] == "figure")
         self.assertTrue(action["scale_bar"] and action["legend"])
         self.assertEqual(action["dots_per_inch"], 300)
         report = self.finish()
-        said = next(line for line in report["messages"] if "leaf.tif" in line)
-        self.assertTrue(said.startswith(f"Figure: {self.folder / 'leaf.tif'} (1004 x "), said)
+        said = next(line for line in report["messages"] if "leaf.png" in line)
+        self.assertTrue(said.startswith(f"Figure: {self.folder / 'leaf.png'} (1004 x "), said)
         self.assertTrue(said.endswith("; the legend is left out: no group is painted or traced, and visible"), said)
         again = self.folder / "again.png"
-        self.check("render", self.folder / "leaf.tif", "-o", again)   # from the session in it
+        self.check("render", self.folder / "leaf.png", "-o", again)   # from the session and the elements in it
         self.assertEqual(list(size_of(again)), action["pixels"])
+        self.assertEqual(pixels_in(again), pixels_in(self.folder / "leaf.png"))
 
     def test_a_size_that_no_picture_has_is_refused_in_the_dialog(self):
         self.open_ball()
@@ -76,18 +88,6 @@ class Figure(Seen):
         self.finish()
         self.assertEqual(list(self.folder.glob("*figure*")), [])
 
-    def test_a_picture_is_copied_through_the_program_of_the_display(self):
-        copied, words = self.folder / "copied.png", self.folder / "words"
-        self.open_ball(self.programs(xclip=f'/bin/cat > {copied}\necho "$@" > {words}\n'))
-        self.show("Figure...", FIGURE)
-        self.click_on("Copy picture", FIGURE)
-        self.see("Copied the picture to the clipboard (1004 x ", "Status")
-        self.finish()
-        self.assertEqual(size_of(copied)[0], 1004)
-        self.assertEqual(words.read_text(), "-selection clipboard -target image/png -in\n")
-
-    def test_without_programs_the_dialogs_name_their_packages(self):
-        self.open_ball(self.programs())
     def test_lines_pasted_into_a_title_stay_words(self):
         if not shutil.which("xclip"):
             self.skipTest("xclip is not installed")
@@ -103,6 +103,18 @@ class Figure(Seen):
         self.see_no_more("", FIGURE)
         self.finish()
 
+    def test_a_picture_is_copied_through_the_program_of_the_display(self):
+        copied, words = self.folder / "copied.png", self.folder / "words"
+        self.open_ball(self.programs(xclip=f'/bin/cat > {copied}\necho "$@" > {words}\n'))
+        self.show("Figure...", FIGURE)
+        self.click_on("Copy picture", FIGURE)
+        self.see("Copied the picture to the clipboard (1004 x ", "Status")
+        self.finish()
+        self.assertEqual(size_of(copied)[0], 1004)
+        self.assertEqual(words.read_text(), "-selection clipboard -target image/png -in\n")
+
+    def test_without_programs_the_dialogs_name_their_packages(self):
+        self.open_ball(self.programs())
         self.show("Figure...", FIGURE)
         self.see("Copy picture needs xclip", FIGURE)
         self.press("Escape")

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "engine/base/text.h"
+#include "engine/workbench/actions/figure_text.h"
 #include "engine/workbench/lists/group_list.h"
 #include "engine/workbench/sight/print_size.h"
 #include "ui/picture_texts.h"
@@ -13,13 +14,11 @@ namespace shvr::cli {
 
 namespace {
 
-constexpr double MIN_TEXT_PIXELS = 6.0, MAX_TEXT_PIXELS = 1000.0;
-
 /// Reads "X,Y,Z:TEXT".
-ui::FigureText parse_figure_text(const std::string& given)
+ui::TextInFigure parse_figure_text(const std::string& given)
 {
     const size_t colon = given.find(':');
-    ui::FigureText result{.voxel = {}, .text = colon == given.npos ? "" : given.substr(colon + 1)};
+    ui::TextInFigure result{.voxel = {}, .text = colon == given.npos ? "" : given.substr(colon + 1)};
     std::string_view rest = std::string_view(given).substr(0, std::min(colon, given.size()));
     bool fits = !trimmed(result.text).empty();
     for (int axis = 0; axis < 3 && fits; ++axis) {
@@ -35,21 +34,32 @@ ui::FigureText parse_figure_text(const std::string& given)
     return result;
 }
 
+/// Returns what the input keeps, if it is a picture, with the given height of texts, or if that is 0 with the kept one.
+ui::DrawnElements kept_elements(const std::filesystem::path& input, double text_pixels)
+{
+    ui::DrawnElements kept = ui::elements_in_picture(input).value_or(ui::DrawnElements());
+    if (text_pixels != 0.0) kept.text_pixels = text_pixels;
+    return kept;
+}
+
 }  // namespace
 
 void add_figure_options(CLI::App& command, FigureOptions& options)
 {
-    ui::FigureElements& elements = options.elements;
-    command.add_flag("--scale-bar", elements.scale_bar, "Draw a line of a rounded length, with the length");
-    command.add_flag("--color-bar", elements.color_bar,
+    ui::DrawnElements& elements = options.elements;
+    command.add_flag("--scale-bar", elements.has_scale_bar, "Draw a line of a rounded length, with the length");
+    command.add_flag("--color-bar", elements.has_color_bar,
                      "Draw colours and opacity of the transfer function, with intensities");
-    command.add_flag("--legend", elements.legend, "Draw colours and names of the groups that are painted or traced");
-    command.add_flag("--axes", elements.axes, "Draw the directions of x, y and z");
-    command.add_flag("--measurements", elements.measurements,
+    command.add_flag("--legend", elements.has_legend,
+                     "Draw colours and names of the groups that are painted or traced");
+    command.add_flag("--axes", elements.has_axes, "Draw the directions of x, y and z");
+    command.add_flag("--measurements", elements.has_measurements,
                      "Draw lines, names and values of the session's measurements");
     command.add_option("--title", elements.title, "Draw a title");
     command.add_option("--text", options.texts, "Draw a dot and a text at a voxel, as in 12.5,40,7:stem; repeatable")
         ->allow_extra_args(false);
+    command.add_flag("--no-elements", options.draws_none,
+                     "Draw none of these, not even those that a picture which is drawn again keeps");
     command.add_option(
         "--dpi", options.dots_per_inch,
         sentence("Dots per inch, stored in the picture, and for a --size in mm (default there: ", PRINT_DPI, ")"));
@@ -75,21 +85,23 @@ glm::uvec2 take_picture_size(const std::string& text, FigureOptions& options)
     return size;
 }
 
-void add_resolution(PictureTexts& texts, const FigureOptions& options)
+void add_figure_texts(PictureTexts& texts, const FigureOptions& options)
 {
+    if (!texts.empty()) ui::add_elements(texts, options.elements);
     if (options.dots_per_inch) texts.emplace_back(PICTURE_DPI, digits_of(*options.dots_per_inch));
 }
 
-void check_figure(FigureOptions& options)
+void check_figure(FigureOptions& options, const std::filesystem::path& input)
 {
     const double dpi = options.dots_per_inch.value_or(PRINT_DPI);
     if (!(dpi >= MIN_PRINT_DPI && dpi <= MAX_PRINT_DPI))
         throw UsageError(sentence("--dpi is ", dpi, "; expected a number from ", MIN_PRINT_DPI, " to ", MAX_PRINT_DPI));
     const double pixels = options.elements.text_pixels;
-    if (pixels != 0.0 && !(pixels >= MIN_TEXT_PIXELS && pixels <= MAX_TEXT_PIXELS))
-        throw UsageError(sentence("--text-pixels is ", pixels, "; expected a number from ", MIN_TEXT_PIXELS, " to ",
-                                  MAX_TEXT_PIXELS));
+    if (pixels != 0.0 && !(pixels >= ui::MIN_TEXT_PIXELS && pixels <= ui::MAX_TEXT_PIXELS))
+        throw UsageError(sentence("--text-pixels is ", pixels, "; expected a number from ", ui::MIN_TEXT_PIXELS, " to ",
+                                  ui::MAX_TEXT_PIXELS));
     for (const std::string& text : options.texts) options.elements.texts.push_back(parse_figure_text(text));
+    if (options.elements.is_empty() && !options.draws_none) options.elements = kept_elements(input, pixels);
     if (pixels != 0.0 && options.elements.is_empty())
         throw UsageError(
             "--text-pixels is given without anything to draw; expected it with --title, --scale-bar, "

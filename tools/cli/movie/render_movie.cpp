@@ -152,7 +152,7 @@ void Drawing::draw_files()
         PictureTexts texts = request_.with_session
                                  ? texts_of_picture(frame.session, frame.camera, path, opened_.project, kept_probe)
                                  : PictureTexts();
-        add_resolution(texts, request_.figure);
+        add_figure_texts(texts, request_.figure);
         PictureFile file(path, *opened_.renderer, frame.session, frame.camera, options_of(frame, index), texts,
                          figure_over(request_.figure, opened_, frame.session, frame.camera, warnings_, &memory_));
         draw_parts(file, &PictureFile::is_drawn, index);

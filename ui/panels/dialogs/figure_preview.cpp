@@ -7,6 +7,7 @@
 
 #include <imgui/imgui.h>
 
+#include "engine/session/words/number_words.h"
 #include "engine/workbench/actions/action_rows.h"
 #include "engine/workbench/forms/figure_form.h"
 #include "engine/workbench/lists/group_list.h"
@@ -98,7 +99,7 @@ Figure elements_over(const FigureTask& task, const Model& model, Session session
     session.render.size = pixels;
     const std::vector<Pane> panes = panes_of(session.view, model.camera, pixels, model.volume, model.probe_voxel);
     const std::vector<uint8_t> groups = drawn_groups(session, model.voxels_by_group, model.trace);
-    Figure figure = figure_of(elements_of(task.elements), {session, model.volume, panes, groups}, draw_texts, left_out);
+    Figure figure = figure_of(task.elements, {session, model.volume, panes, groups}, draw_texts, left_out);
     const OverlayScene lines =
         overlay_of(session.view, session.cut, model.camera, panes[0].pixels(), model.probe_voxel, model.volume);
     for (size_t i = 0; i < panes.size(); ++i) {
@@ -283,7 +284,8 @@ void figure_preview(const FigureTask& task, const Model& model, bool begins)
         "sharp, and without the probe.");
     ImGui::PushTextWrapPos(begin.x - ImGui::GetWindowPos().x + float(room.x));
     if (shown_page.has_unseen) ImGui::TextDisabled("Striped: not seen in the window; the figure shows the scan there.");
-    for (const std::string& words : shown_page.left_out) {
+    for (const std::string& each : shown_page.left_out) {
+        const std::string words = capitalised(each);
         want_glyphs(words);
         ImGui::PushStyleColor(ImGuiCol_Text, color_of(ColorRole::warning));
         ImGui::TextUnformatted(words.c_str());

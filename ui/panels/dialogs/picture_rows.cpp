@@ -78,7 +78,7 @@ void elements_rows(DrawnElements& drawn)
 {
     field_name("Draw");
     ImGui::Checkbox("Scale bar", &drawn.has_scale_bar);
-    hint("A line of a rounded length; in perspective, it names the plane in which it holds.");
+    hint("A line of a rounded length; in perspective, it says where it holds.");
     ImGui::SameLine();
     ImGui::Checkbox("Colour bar", &drawn.has_color_bar);
     hint("Colours and opacity of the transfer function, with intensities.");
@@ -254,7 +254,7 @@ std::string about(const FigureForm& form, const Model& model, const KnownScan&)
     const glm::ivec2 pixels = pixels_of(form.size);
     const std::filesystem::path folder = placed_new(form.path, base_of(model).parent_path()).parent_path();
     return sentence("Draws ", pixels.x, " x ", pixels.y, " pixels to ", folder.string(),
-                    ". The file keeps the session, from which shvr render makes it again.");
+                    ". The file keeps the session and what is drawn over it, from which shvr render makes it again.");
 }
 
 std::string about(const MovieForm& form, const Model& model, const KnownScan&)

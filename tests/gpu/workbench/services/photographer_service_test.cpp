@@ -8,6 +8,7 @@
 #include "engine/base/image_file.h"
 #include "engine/session/looks/key_look.h"
 #include "engine/session/picture_session.h"
+#include "engine/workbench/actions/figure_text.h"
 #include "engine/workbench/services/photographer.h"
 #include "tests/gpu/workbench/services/desk_with_scan.h"
 
@@ -85,7 +86,11 @@ TEST_CASE_FIXTURE(PhotographerAlone,
                   "photographer: a figure has its size and its session, and is not joined by another")
 {
     const std::filesystem::path path = folder.path / "a.tif";
-    photographer.act(FigureTask{.path = path, .pixels = {59, 30}, .dots_per_inch = 300.0, .is_transparent = true});
+    photographer.act(FigureTask{.path = path,
+                                .pixels = {59, 30},
+                                .dots_per_inch = 300.0,
+                                .is_transparent = true,
+                                .elements = {.has_scale_bar = true, .title = "pith"}});
     CHECK(says("A figure of 59 x 30 pixels, 5 x 2.5 mm at 300 dots per inch is drawn"));
     CHECK_THROWS_WITH(photographer.act(FigureTask{.path = folder.path / "b.png"}),
                       doctest::Contains("nother picture is being drawn"));
@@ -94,17 +99,25 @@ TEST_CASE_FIXTURE(PhotographerAlone,
     REQUIRE(kept);
     CHECK(kept->text.find("[59,30]") != std::string::npos);
     CHECK(kept->text.find("#ffffff00") != std::string::npos);
+    const std::optional<DrawnElements> drawn = elements_in_picture(path);
+    REQUIRE(drawn);
+    CHECK((drawn->has_scale_bar && !drawn->has_legend && drawn->title == "pith"));
     CHECK_FALSE(std::filesystem::exists(folder.path / "b.png"));
 }
 
 TEST_CASE_FIXTURE(PhotographerAlone, "photographer: a movie turns, and a cancelled one names what is finished")
 {
-    const MovieTask task{.path = folder.path / "frames", .turntable_degrees = 180.0, .frames = 3, .pixels = {24, 20}};
+    const MovieTask task{.path = folder.path / "frames",
+                         .turntable_degrees = 180.0,
+                         .frames = 3,
+                         .pixels = {24, 20},
+                         .elements = {.has_axes = true}};
     photographer.act(task);
     desk.say("careful", Weight::warning);
     until([&] { photographer.advance(); }, [&] { return !photographer.has_large(); });
     const std::deque<Message>& all = desk.messages.all();
     CHECK(std::ranges::count(all, std::string("careful"), &Message::text) == 1);  // its progress is said after that
+    CHECK(elements_in_picture(task.path / "frame-0002.png").value_or(DrawnElements()).has_axes);
     CHECK(says("frames (3 frames, 24 x 20 pixels)"));
     CHECK_FALSE(read_png(task.path / "frame-0001.png") == read_png(task.path / "frame-0002.png"));
     photographer.act(task);

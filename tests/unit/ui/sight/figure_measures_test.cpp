@@ -56,7 +56,7 @@ private:
         const Camera camera = orbited(front, front.target, degrees, 0.0);
         const std::vector<Pane> panes = panes_of(session_.view, camera, {480, 360}, volume_, middle_);
         std::vector<std::string> left_out;
-        const Figure figure = figure_of({.measurements = true, .text_pixels = 14.0},
+        const Figure figure = figure_of({.has_measurements = true, .text_pixels = 14.0},
                                         {session_, volume_, panes, {}, memory}, blocks, left_out);
         CHECK(left_out == std::vector<std::string>());
         const std::vector<Stamp>& stamps = figure.parts.front().stamps;  // a rim before each text
@@ -77,6 +77,28 @@ private:
 };
 
 }  // namespace
+
+TEST_CASE("a label of a measurement that is wider than the picture is left out, with a sentence")
+{
+    VolumeInfo volume{.name = "volume"};
+    volume.size = {100, 100, 100};
+    volume.unit = "voxel";
+    Session session;
+    session.measurements.push_back({{glm::dvec3(10.0, 50.0, 50.0), glm::dvec3(90.0, 50.0, 50.0)}});
+    const auto labels = [&](uint32_t side, std::vector<std::string>& left_out) {
+        const std::vector<Pane> panes =
+            panes_of(session.view, camera_looking("front", volume), {side, side}, volume, glm::dvec3(50.0));
+        const Figure figure = figure_of({.has_measurements = true, .text_pixels = 10.0},
+                                        {session, volume, panes, {}, nullptr}, blocks, left_out);
+        CHECK_FALSE(figure.parts.front().strokes.empty());
+        return figure.parts.front().stamps.size() / 2;  // a rim before each text
+    };
+    std::vector<std::string> small, large;
+    CHECK(labels(47, small) == 0);  // "80 voxels" takes 45 pixels and a margin
+    CHECK(small == std::vector<std::string>{"1 label of measurements is left out: the picture is too small for it"});
+    CHECK(labels(300, large) == 1);
+    CHECK(large.empty());
+}
 
 TEST_CASE("labels of measurements stay where they are in the frames of a movie, which are the same each time")
 {
