@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Checks that includes point the way the architecture says, that the tree is as it should be, and that no phantom uses a
-mathematical function whose last bit depends on the processor.
+"""Checks that includes point the way the architecture says, that the tree is as it should be, that no phantom uses a
+mathematical function whose last bit depends on the processor, and that wrapped functions are called by their wrappers.
 
 tools/check_layers.py               checks the repository; one line per finding, exit status 1 if there is any
 tools/check_layers.py --self-test   proves on a small made-up tree that each rule reports what it forbids
@@ -185,6 +185,9 @@ UNEQUAL_BITS = re.compile(
     r"[lt]gamma|radians|degrees|rotate|slerp)[fl]?)\s*\("
 )
 
+# Functions of libraries that one file alone calls: (pattern, that file, what the others call)
+WRAPPED = [(re.compile(r"\bBeginPopupModal\s*\("), "ui/panels/widgets.cpp", "begin_dialog (ui/panels/widgets.h)")]
+
 TOP_LEVEL_FILES = {"CMakeLists.txt", "CMakePresets.json", "DECISIONS.md", "LICENSE", "README.md"}
 TOP_LEVEL_FOLDERS = {"assets", "engine", "haptics", "shaders", "tests", "tools", "ui"}
 
@@ -255,6 +258,16 @@ def check_equal_bits(root, files):
         for number, line in enumerate((root / file).read_text(encoding="utf-8").splitlines(), 1):
             if match := UNEQUAL_BITS.search(line.split("//")[0]):
                 yield f"{file}:{number}: the last bit of {match[1]} depends on the processor; use turns.h or sums and products"
+
+
+def check_wrapped(root, files):
+    for file in files:
+        if file.suffix not in INCLUDING:
+            continue
+        for number, line in enumerate((root / file).read_text(encoding="utf-8").splitlines(), 1):
+            for pattern, place, wrapper in WRAPPED:
+                if str(file) != place and pattern.search(line.split("//")[0]):
+                    yield f"{file}:{number}: call {wrapper} instead"
 
 
 def check_table(includes, rooms):
@@ -355,6 +368,7 @@ def check(root, rooms=MAY_INCLUDE, folder_cycles=FOLDER_CYCLES):
         *findings,
         *check_arrows(includes, rooms),
         *check_equal_bits(root, files),
+        *check_wrapped(root, files),
         *check_table(includes, rooms),
         *check_cycles(includes),
         *check_folder_cycles(includes, folder_cycles),
@@ -411,6 +425,7 @@ FORBIDDEN = [
     ("tools/bad.cpp", "#include <CLI/CLI.hpp>", "CLI11"),
     ("engine/volume/phantoms/bad.cpp", "// cos(x)\ny = 2 * std::cos(x);", "bad.cpp:2: the last bit of cos depends"),
     ("engine/volume/procedural/bad.h", "return expf (x);", "bad.h:1: the last bit of expf depends"),
+    ("ui/panels/bad.cpp", 'if (ImGui::BeginPopupModal("x")) {', "bad.cpp:1: call begin_dialog"),
     ("engine/base/error.h", '#include "error.h"', "cycle of includes: engine/base/error.h -> engine/base/error.h"),
     ("engine/new/bad.h", "", "room engine/new is not in the table"),
     ("notes.txt", "", "notes.txt: does not belong at the top level"),

@@ -103,7 +103,7 @@ bool color_field(const char* label, glm::dvec3& linear, bool has_numbers)
     is_changed |= take_dropped(color);
     if (ImGui::BeginPopup("picker")) {
         is_changed |= picker(color);
-        ImGui::EndPopup();
+        end_popup();
     }
     ImGui::PopID();
     ImGui::EndGroup();

@@ -133,7 +133,7 @@ bool settings_popup(uint8_t group, const Model& model, GroupSettings& settings, 
         changed = true;
     }
     hint("Uses the parent group's opacity, if there is a parent.");
-    ImGui::EndPopup();
+    end_popup();
     return changed;
 }
 
@@ -338,7 +338,7 @@ void rename_button(const Model& model, Actions& actions)
     if (ImGui::InputText("##name", &name)) set(actions, model, [&](Session& s) { s.groups[group].name = name; });
     keys.after_field();
     if (ImGui::IsItemDeactivatedAfterEdit()) ImGui::CloseCurrentPopup();
-    ImGui::EndPopup();
+    end_popup();
 }
 
 /// Draws the search field, the button for a new group, and the choice of the values shown next to the names.

@@ -157,6 +157,19 @@ void close_menus_by_escape()
     if (is_menu && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) ImGui::ClosePopupToLevel(0, true);
 }
 
+bool begin_dialog(const char* title, ImGuiWindowFlags flags)
+{
+    const bool is_open = ImGui::BeginPopupModal(title, nullptr, flags);
+    if (is_open) ImGui::GetCurrentWindow()->WasActive = true;
+    return is_open;
+}
+
+void end_popup()
+{
+    if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) ImGui::CloseCurrentPopup();
+    ImGui::EndPopup();
+}
+
 std::string shortened(const std::string& text, float width)
 {
     constexpr const char* DOTS = "...";

@@ -60,6 +60,13 @@ bool begin_menu(const char* label, bool is_enabled = true);
 /// the nested one under the pointer.
 void close_menus_by_escape();
 
+/// ImGui::BeginPopupModal, for every dialog. A dialog blocks what lies behind it from its first frame on: Dear ImGui
+/// (1.86) does so from the second one on, and aborts if a tooltip or another window appears behind the dialog before.
+bool begin_dialog(const char* title, ImGuiWindowFlags flags);
+
+/// ImGui::EndPopup for a popup of a panel, which Escape closes even while a field in it has the keyboard.
+void end_popup();
+
 /// Returns the text, or the longest beginning of the text that fits `width`, followed by three dots.
 std::string shortened(const std::string& text, float width);
 

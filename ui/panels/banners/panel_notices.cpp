@@ -101,7 +101,7 @@ void question_of_belief(const Model& model, Actions& actions)
     if (!ImGui::IsPopupOpen(QUESTION)) ImGui::OpenPopup(QUESTION);
     ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
     ImGui::SetNextWindowSize({40.0f * ImGui::GetFontSize(), 0.0f});
-    if (!ImGui::BeginPopupModal(QUESTION, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
+    if (!begin_dialog(QUESTION, ImGuiWindowFlags_AlwaysAutoResize)) return;
     ImGui::PushTextWrapPos(0.0f);
     for (const Dispute& dispute : model.disputes) ImGui::TextUnformatted(dispute.text.c_str());
     ImGui::TextUnformatted("Both are kept, whichever is taken.");
@@ -123,7 +123,7 @@ void question_of_use(const Model& model, Actions& actions)
     if (!ImGui::IsPopupOpen(UNCLEAR)) ImGui::OpenPopup(UNCLEAR);
     ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
     ImGui::SetNextWindowSize({40.0f * ImGui::GetFontSize(), 0.0f});
-    if (!ImGui::BeginPopupModal(UNCLEAR, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
+    if (!begin_dialog(UNCLEAR, ImGuiWindowFlags_AlwaysAutoResize)) return;
     ImGui::PushTextWrapPos(0.0f);
     ImGui::Text("%s %s.", file.path.c_str(), file.why.c_str());
     ImGui::PopTextWrapPos();

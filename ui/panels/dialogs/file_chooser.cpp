@@ -236,7 +236,7 @@ std::optional<fs::path> FileChooser::draw()
         {std::min(58.0f * font, 0.94f * screen.WorkSize.x), std::min(36.0f * font, 0.9f * screen.WorkSize.y)},
         ImGuiCond_Appearing);
     accepted_.reset();
-    is_open_ = ImGui::BeginPopupModal(question_.title, nullptr, ImGuiWindowFlags_NoSavedSettings);
+    is_open_ = begin_dialog(question_.title, ImGuiWindowFlags_NoSavedSettings);
     if (!is_open_) return std::nullopt;
     auto result = contents();
     if (is_open_) open_in_frame = ImGui::GetFrameCount();

@@ -77,7 +77,7 @@ void keep_look_dialog(const Model& model, Actions& actions)
     if (!was_shown) return;
     ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
     bool is_over = true;
-    if (ImGui::BeginPopupModal(KEEP_TITLE, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) {
+    if (begin_dialog(KEEP_TITLE, ImGuiWindowFlags_AlwaysAutoResize)) {
         const bool is_entered = look_name_row(name);
         const KeepLook keep{.name = std::string(trimmed(name)), .path = {}};
         const std::string why = why_not(model, keep);

@@ -176,7 +176,7 @@ void load_dialog(const Model& model, Actions& actions)
     if (std::exchange(loading.is_asked_for, false)) ImGui::OpenPopup(LOAD);
     ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
     ImGui::SetNextWindowSize({36.0f * ImGui::GetFontSize(), 0.0f});
-    if (!ImGui::BeginPopupModal(LOAD, nullptr, ImGuiWindowFlags_NoSavedSettings)) return;
+    if (!begin_dialog(LOAD, ImGuiWindowFlags_NoSavedSettings)) return;
     follow_choices(model.candidate);
     LoadForm& form = loading.form;
     ImGui::PushItemWidth(14.0f * ImGui::GetFontSize());
@@ -249,7 +249,7 @@ void spacing_dialog(const Model& model, Actions& actions)
     ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
     ImGui::SetNextWindowSize({32.0f * ImGui::GetFontSize(), 0.0f});
     if (!correcting.is_shown) return;
-    if (!ImGui::BeginPopupModal(SPACING, nullptr, ImGuiWindowFlags_NoSavedSettings)) {
+    if (!begin_dialog(SPACING, ImGuiWindowFlags_NoSavedSettings)) {
         correcting.is_shown = false;
         if (is_asked_for) actions.push_back(ShowDialog{});
         return;

@@ -209,7 +209,12 @@ void load_preview_dialog(const Model& model, Actions& actions)
     if (!asking.is_shown) return;
     ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
     size_dialog();
-    if (!ImGui::BeginPopupModal(TITLE, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
+    if (!begin_dialog(TITLE, ImGuiWindowFlags_AlwaysAutoResize)) {
+        // Another popup closed it.
+        asking.is_shown = false;
+        if (is_wanted) actions.insert(actions.end(), {PreviewLoad{}, ShowDialog{}});
+        return;
+    }
     const bool has_chooser = path_chooser_is_open();
     const bool is_filled = follow_drops(model) || std::exchange(asking.is_suggested, false);
     path_row("File", asking.path, "mask, offsets, trace, transfer function or mesh", base_of(model).parent_path() / "",

@@ -146,7 +146,7 @@ public:
         if (!is_shown_) return;
         ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
         size_dialog();
-        if (!ImGui::BeginPopupModal(Task::TITLE, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) {
+        if (!begin_dialog(Task::TITLE, ImGuiWindowFlags_AlwaysAutoResize)) {
             // Another popup closed it.
             is_shown_ = false;
             if (model.dialog == dialog_) actions.push_back(ShowDialog{});

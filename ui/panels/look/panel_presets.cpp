@@ -128,7 +128,7 @@ std::string why_not_named(const Model& model)
 
 void name_dialog(const Model& model, Actions& actions)
 {
-    if (!ImGui::BeginPopupModal(ASK_NAME, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
+    if (!begin_dialog(ASK_NAME, ImGuiWindowFlags_AlwaysAutoResize)) return;
     static FieldKeys keys;
     keys.before_field(ImGui::IsWindowAppearing());
     ImGui::SetNextItemWidth(18.0f * ImGui::GetFontSize());
