@@ -15,6 +15,7 @@
 #include "engine/workbench/lists/group_list.h"
 #include "ui/panels/color_field.h"
 #include "ui/panels/field_keys.h"
+#include "ui/panels/imgui_keys.h"
 #include "ui/panels/widgets.h"
 
 namespace shvr::ui {
@@ -112,16 +113,29 @@ void drag_and_drop(uint8_t group, const Model& model, Actions& actions)
     ImGui::EndDragDropTarget();
 }
 
+/// Draws the name of a group in a popup, which Enter closes. Returns the new name once it is typed.
+std::optional<std::string> group_name_field(uint8_t group, const Model& model, FieldKeys& keys)
+{
+    const std::string name = group_of(model.session.groups, group).name;
+    ImGui::SetNextItemWidth(14.0f * ImGui::GetFontSize());
+    keys.before_field(ImGui::IsWindowAppearing());
+    std::optional<std::string> renamed = name_field("##name", name);
+    keys.after_field();
+    const bool is_entered = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false) ||
+                            ImGui::IsKeyPressed(ImGui::GetKeyIndex(KEYPAD_ENTER), false);
+    if (ImGui::IsItemDeactivated() && is_entered) ImGui::CloseCurrentPopup();
+    return renamed;
+}
+
 bool settings_popup(uint8_t group, const Model& model, GroupSettings& settings, Actions& actions)
 {
     if (!ImGui::BeginPopupContextItem("settings")) return false;
-    bool changed = false;
-    ImGui::SetNextItemWidth(12.0f * ImGui::GetFontSize());
     static FieldKeys keys;
-    keys.before_field(ImGui::IsWindowAppearing());
-    changed = ImGui::InputText("Name", &settings.name);
-    keys.after_field();
-    if (ImGui::IsItemDeactivatedAfterEdit()) ImGui::CloseCurrentPopup();
+    const std::optional<std::string> renamed = group_name_field(group, model, keys);
+    ImGui::SameLine();
+    ImGui::TextUnformatted("Name");
+    bool changed = renamed.has_value();
+    if (renamed) settings.name = *renamed;
     if (ImGui::MenuItem("Belongs to no group", nullptr, false, settings.parent != 0))
         set_parent(group, 0, model, actions);
     if (ImGui::MenuItem("Default colour", nullptr, false, settings.color.has_value())) {
@@ -332,12 +346,8 @@ void rename_button(const Model& model, Actions& actions)
     hint("Renames the active group.");
     if (!ImGui::BeginPopup("rename")) return;
     static FieldKeys keys;
-    keys.before_field(ImGui::IsWindowAppearing());
-    std::string name = group_of(model.session.groups, group).name;
-    ImGui::SetNextItemWidth(14.0f * ImGui::GetFontSize());
-    if (ImGui::InputText("##name", &name)) set(actions, model, [&](Session& s) { s.groups[group].name = name; });
-    keys.after_field();
-    if (ImGui::IsItemDeactivatedAfterEdit()) ImGui::CloseCurrentPopup();
+    if (const auto renamed = group_name_field(group, model, keys))
+        set(actions, model, [&](Session& s) { s.groups[group].name = *renamed; });
     end_popup();
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include <imgui/imgui.h>
-#include <imgui/imgui_stdlib.h>
 
 #include "engine/workbench/actions/action_rows.h"
 #include "engine/workbench/edits/edit.h"
@@ -24,13 +23,6 @@ constexpr KindRow KIND_ROWS[] = {
     {MeasureKind::path, "Path", "Click points along the structure; a double click ends the path."},
     {MeasureKind::angle, "Angle", "Click a side, the vertex, and the other side."},
 };
-
-/// Between frames: the name that is being typed. `number`: of its measurement, from 1; 0: none.
-struct MeasurementsState {
-    size_t number = 0;
-    std::string name;
-};
-MeasurementsState typed_name;
 
 /// Draws the kinds; choosing one takes the tool, too.
 void kinds(const Model& model, Actions& actions)
@@ -59,22 +51,12 @@ void button(const char* text, const Action& action, const Model& model, Actions&
     ImGui::EndDisabled();
 }
 
-/// Draws a name, which can be typed over. It is taken by Enter or when another widget is used.
+/// Draws a name, which can be typed over.
 void name_cell(size_t number, const std::string& name, Actions& actions)
 {
-    const bool is_typed = typed_name.number == number;
-    std::string shown = is_typed ? typed_name.name : name;
     ImGui::SetNextItemWidth(-1.0f);
-    ImGui::InputText("##name", &shown);
-    if (ImGui::IsItemActive()) {
-        typed_name = {number, shown};
-        return;
-    }
+    if (const auto renamed = name_field("##name", name)) actions.push_back(RenameMeasurement{number, *renamed});
     hint("Click to type another name.");
-    if (!is_typed) return;
-    typed_name = {};
-    if (ImGui::IsItemDeactivatedAfterEdit() && !shown.empty() && shown != name)
-        actions.push_back(RenameMeasurement{number, shown});
 }
 
 void measurement_row(size_t number, const Model& model, Actions& actions)

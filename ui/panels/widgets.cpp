@@ -6,6 +6,7 @@
 
 #include <imgui/imgui.h>
 #include <imgui/imgui_internal.h>
+#include <imgui/imgui_stdlib.h>
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
@@ -168,6 +169,36 @@ void end_popup()
 {
     if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
+}
+
+namespace {
+
+/// The name that is being typed. One field at a time has the keyboard.
+struct TypedName {
+    ImGuiID field = 0;
+    std::string text;
+    int frame = -1;  ///< in which the field was drawn last
+};
+TypedName typed_name;
+
+}  // namespace
+
+std::optional<std::string> name_field(const char* id, const std::string& name)
+{
+    const ImGuiID field = ImGui::GetID(id);
+    const int frame = ImGui::GetFrameCount();
+    const bool was_typed = typed_name.field == field && typed_name.frame + 1 >= frame;
+    std::string text = was_typed ? typed_name.text : name;
+    ImGui::InputText(id, &text, ImGuiInputTextFlags_AutoSelectAll);
+    if (ImGui::IsItemActive()) {
+        typed_name = {field, text, frame};
+        return std::nullopt;
+    }
+    if (!was_typed) return std::nullopt;
+    typed_name = {};
+    const std::string_view typed = trimmed(text);
+    if (!ImGui::IsItemDeactivatedAfterEdit() || typed.empty() || typed == name) return std::nullopt;
+    return std::string(typed);
 }
 
 std::string shortened(const std::string& text, float width)

@@ -1,6 +1,7 @@
 #pragma once
 // Small widgets that panels share. Between Window::begin_ui and Window::present, main thread.
 
+#include <optional>
 #include <string>
 
 #include <imgui/imgui.h>
@@ -66,6 +67,11 @@ bool begin_dialog(const char* title, ImGuiWindowFlags flags);
 
 /// ImGui::EndPopup for a popup of a panel, which Escape closes even while a field in it has the keyboard.
 void end_popup();
+
+/// Draws a name that a session keeps, without a visible label ("##name"), to be typed over. Returns the new name once
+/// Enter is pressed or the field loses the keyboard, so that it is one step of the history; without blanks around it,
+/// and only if it is neither empty nor the old one. Escape keeps the old name.
+std::optional<std::string> name_field(const char* id, const std::string& name);
 
 /// Returns the text, or the longest beginning of the text that fits `width`, followed by three dots.
 std::string shortened(const std::string& text, float width);

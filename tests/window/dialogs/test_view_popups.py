@@ -4,7 +4,7 @@ import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from seen import Seen, only_panel  # noqa: E402
+from seen import Seen, in_short, only_panel  # noqa: E402
 
 FONT = 14   # pixels, as it ships
 EXPORT = "Export annotation"
@@ -13,13 +13,11 @@ POPUP = "##Popup"
 
 class Popups(Seen):
     def open_groups(self):
-        session = self.write_ball()
-        self.open_scan(session, preferences=only_panel("groups"))
-        return session
+        self.open_scan(self.write_ball(groups={"3": {"name": "root"}}), preferences=only_panel("groups"))
 
     def open_picker(self):
         """Of group 3, by a click on its colour, left of the column See; the pointer stays there."""
-        _, top, _, bottom = self.see_at_rest("3  group 3", "Side panel")["box"]
+        _, top, _, bottom = self.see_at_rest("3  root", "Side panel")["box"]
         left = self.see_at_rest("See", "Side panel")["box"][0]
         self.do("mousemove", round(left - FONT), round((top + bottom) / 2), pause_s=0)
         self.see_frames()
@@ -29,7 +27,7 @@ class Popups(Seen):
         self.see("#", POPUP)
 
     def open_list(self):
-        self.click_on("3  group 3", "Tools")
+        self.click_on("3  root", "Tools")
         self.see("", "##Combo_00")
 
     def test_a_dialog_closes_an_open_popup(self):
@@ -49,7 +47,7 @@ class Popups(Seen):
         self.click_on("#", POPUP)   # the colour as hexadecimal digits
         self.press("Escape")
         self.see_no_more("", POPUP)
-        self.click_on("3  group 3", "Side panel", button=3)
+        self.click_on("3  root", "Side panel", button=3)
         self.see("Belongs to no group", POPUP)
         self.see_frames()   # the field has the keys from the second one on
         self.press("Escape")
@@ -59,6 +57,50 @@ class Popups(Seen):
         self.press("Escape")
         self.see_no_more("", EXPORT)
         self.finish()
+
+    def names(self):
+        """What group 3 was named, in order."""
+        return [action["values"]["groups"]["3"]["name"] for action in self.done()
+                if in_short(action) == "set groups.3.name"]
+
+    def begin_name(self, *keys):
+        """Types a name over the present one, which is selected, in the popup of the button."""
+        self.click_on("Rename", "Side panel")
+        self.see("root", POPUP)
+        self.see_frames()   # the field has the keys from the second one on
+        self.do(*keys, pause_s=0)
+        self.see_frames()
+
+    def check_named(self, name):
+        """Its popup is closed, and one undone step takes the name back."""
+        self.see_no_more("", POPUP)
+        self.see(f"3  {name}", "Side panel")
+        self.check_key("Ctrl+Z", "undo")
+        self.see("3  root", "Side panel")
+
+    def test_a_typed_name_is_one_step_of_the_history(self):
+        self.open_groups()
+        wanted = "set groups.3.name"
+        self.begin_name("type", "--delay", 40, " vein 1 ")
+        self.check_key("Enter", wanted)
+        self.check_named("vein 1")
+        self.begin_name("type", "--delay", 40, "leaf")
+        self.check_follows(lambda: self.click_on("Transfer function", "Side panel"), wanted)   # elsewhere
+        self.check_named("leaf")
+        self.click_on("3  root", "Side panel", button=3)
+        self.see("Belongs to no group", POPUP)
+        self.see_frames()
+        self.do("type", "--delay", 40, "stalk", pause_s=0)
+        self.see("stalk", POPUP)
+        self.check_key("Enter", wanted)
+        self.check_named("stalk")
+        for keys, last in ((("type", "--delay", 40, "pith"), "Escape"), (("key", "BackSpace"), "Enter")):
+            self.begin_name(*keys)
+            self.press(last)
+            self.see_no_more("", POPUP)
+            self.see("3  root", "Side panel")
+        self.finish()
+        self.assertEqual(self.names(), ["vein 1", "leaf", "stalk"])
 
 
 if __name__ == "__main__":
