@@ -6,11 +6,11 @@
 
 #include <imgui/imgui.h>
 
-#include "engine/base/image.h"
 #include "engine/workbench/bindings/hints.h"
 #include "engine/workbench/bindings/tools.h"
 #include "engine/workbench/edits/edit.h"
 #include "engine/workbench/edits/group_steps.h"
+#include "ui/panels/color_field.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/signs/signs.h"
 #include "ui/panels/style.h"
@@ -71,12 +71,6 @@ void tool_button(const ToolRow& row, bool has_name, const Model& model, Actions&
     ImGui::SameLine(0.0f, 0.25f * ImGui::GetFontSize());
 }
 
-ImU32 color_of_group(const glm::dvec3& linear)
-{
-    const auto encoded = [](double value) { return float(srgb_encode(std::clamp(value, 0.0, 1.0))); };
-    return ImGui::ColorConvertFloat4ToU32({encoded(linear.r), encoded(linear.g), encoded(linear.b), 1.0f});
-}
-
 /// Draws a square in the group's colour; the eraser's square is crossed out.
 void swatch(const Model& model, uint8_t group)
 {
@@ -86,7 +80,9 @@ void swatch(const Model& model, uint8_t group)
     const float inset = 0.12f * size;
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const ImVec2 from{begin.x + inset, begin.y + inset}, to{end.x - inset, end.y - inset};
-    if (group != 0) list.AddRectFilled(from, to, color_of_group(group_of(model.session.groups, group).color), 2.0f);
+    if (group != 0)
+        list.AddRectFilled(from, to,
+                           ImGui::ColorConvertFloat4ToU32(encoded(group_of(model.session.groups, group).color)), 2.0f);
     list.AddRect(from, to, shade_of(ColorRole::line), 2.0f);
     if (group == 0) {
         list.AddLine(from, to, shade_of(ColorRole::line), 1.5f);

@@ -38,6 +38,19 @@ class Operations(Operating):
         self.press("Escape")
         self.until(lambda: not self.seen(window=OPERATIONS), "closed window")
 
+    def color_before(self, words, window):
+        """Red, green and blue of the square that stands left of the words in a list."""
+        x0, y0, _, y1 = self.see_at_rest(words, window)["box"]
+        x, y = round(x0) - 21, round((y0 + y1) / 2)
+        return tuple(self.pixels()[2][y][3 * x:3 * x + 3])
+
+    def test_a_group_has_the_same_colour_everywhere(self):
+        self.painted_scan()
+        self.open_operations()
+        shown = self.color_before("3  group 3", "Tools")
+        self.assertGreater(max(shown) - min(shown), 40, shown)   # no grey of the bar
+        self.assertEqual(self.color_before("3  group 3", OPERATIONS), shown)
+
     def test_a_cut_is_drawn_in_the_picture_taken_back_and_carried_out(self):
         x, y = self.painted_scan()
         self.choose_operation("Cut by an outline")

@@ -12,6 +12,7 @@
 #include "engine/base/text.h"
 #include "engine/workbench/forms/operation_form.h"
 #include "engine/workbench/lists/group_list.h"
+#include "ui/panels/color_field.h"
 #include "ui/panels/dialogs/field_widgets.h"
 #include "ui/panels/number_field.h"
 #include "ui/panels/widgets.h"
@@ -39,9 +40,8 @@ LimitsForm limits_form;
 
 void swatch(const Groups& groups, uint8_t group)
 {
-    const glm::dvec3 color = group_of(groups, group).color;
     const float side = ImGui::GetTextLineHeight();
-    ImGui::ColorButton("##color", {float(color.x), float(color.y), float(color.z), 1.0f},
+    ImGui::ColorButton("##color", encoded(group_of(groups, group).color),
                        ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoDragDrop, {side, side});
     ImGui::SameLine();
 }

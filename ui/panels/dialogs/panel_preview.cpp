@@ -12,6 +12,7 @@
 #include "engine/workbench/lists/group_list.h"
 #include "ui/files/annotation_beside.h"
 #include "ui/files/asked.h"
+#include "ui/panels/color_field.h"
 #include "ui/panels/dialogs/field_widgets.h"
 #include "ui/panels/imgui_keys.h"
 #include "ui/panels/panels.h"
@@ -73,10 +74,9 @@ void group_table(const Groups& groups, const LoadPreview& preview)
     ImGui::TableHeadersRow();
     for (const MaskPreview::Group& row : preview.groups) {
         ImGui::TableNextColumn();
-        const glm::dvec3 color = group_of(groups, uint8_t(row.group)).color;
         const float side = ImGui::GetTextLineHeight();
         ImGui::PushID(row.group);
-        ImGui::ColorButton("##color", {float(color.x), float(color.y), float(color.z), 1.0f},
+        ImGui::ColorButton("##color", encoded(group_of(groups, uint8_t(row.group)).color),
                            ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoDragDrop, {side, side});
         ImGui::PopID();
         ImGui::SameLine();
