@@ -162,7 +162,7 @@ bool name_cell(const GroupRow& row, const Model& model, GroupSettings& settings,
     if (!row.is_found) ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
     ImGui::PushStyleColor(ImGuiCol_Header, ImGui::GetColorU32(ImGuiCol_SliderGrab, CHOSEN_ALPHA));
     const std::string label = group == 0 ? "0  unpainted" : label_of_group(model.session.groups, group);
-    const std::string shown = shortened(label, ImGui::GetContentRegionAvail().x) + "###name";
+    const std::string shown = shortened(verbatim(label), ImGui::GetContentRegionAvail().x) + "###name";
     if (ImGui::Selectable(shown.c_str(), group == model.brush().group, ImGuiSelectableFlags_AllowDoubleClick))
         set(actions, model, [&](Session& s) { s.probe.brush.group = group; });
     if (group != 0 && is_double_clicked()) ImGui::OpenPopup("settings");

@@ -43,7 +43,7 @@ void step(const HistoryList& list, const Model& model, size_t row, Actions& acti
     ImGui::TextUnformatted(is_present ? ">" : "");
     ImGui::TableNextColumn();
     if (is_undone) ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
-    const std::string shown = shortened(capitalised(list.label_of(row)), ImGui::GetContentRegionAvail().x);
+    const std::string shown = shortened(verbatim(capitalised(list.label_of(row))), ImGui::GetContentRegionAvail().x);
     const bool is_clicked = ImGui::Selectable(shown.c_str(), is_present);
     if (is_undone) ImGui::PopStyleColor();
     if (const auto action = go_to_row(list, row)) {

@@ -50,7 +50,7 @@ void file_menu(const Model& model, Actions& actions)
     shortcut_item("open", model, actions);
     if (begin_menu("Open recent", !model.preferences.recent.empty())) {
         for (const std::filesystem::path& path : model.preferences.recent)
-            if (ImGui::MenuItem(path.c_str())) actions.push_back(Open{path});
+            if (ImGui::MenuItem(verbatim(path.string()).c_str())) actions.push_back(Open{path});
         ImGui::EndMenu();
     }
     shortcut_item("open_example", model, actions);
@@ -159,7 +159,7 @@ void view_menu(const Model& model, Actions& actions)
     if (!begin_menu("View")) return;
     if (begin_menu("Look from", model.is_open)) {
         for (const std::string& camera : camera_names(model.session))
-            if (ImGui::MenuItem(camera.c_str())) actions.push_back(LookFrom{camera});
+            if (ImGui::MenuItem(verbatim(camera).c_str())) actions.push_back(LookFrom{camera});
         ImGui::EndMenu();
     }
     kept_views_menu(model, actions);
@@ -221,7 +221,7 @@ void paint_menu(const Model& model, Actions& actions)
     ImGui::Separator();
     for (const uint8_t group : known_groups(model)) {
         const std::string label =
-            sentence(int(group), "  ", group_of(model.session.groups, group).name, "##", int(group));
+            sentence(int(group), "  ", verbatim(group_of(model.session.groups, group).name), "##", int(group));
         if (ImGui::MenuItem(label.c_str(), keys_of("group_", group, model).c_str(), model.brush().group == group))
             set(actions, model, [&](Session& s) { s.probe.brush.group = group; });
     }
@@ -262,7 +262,7 @@ void trace_menu(const Model& model, Actions& actions)
     if (begin_menu("Group of the selection", !selected.empty())) {
         for (const uint8_t group : known_groups(model)) {
             const std::string label =
-                sentence(int(group), "  ", group_of(model.session.groups, group).name, "##", int(group));
+                sentence(int(group), "  ", verbatim(group_of(model.session.groups, group).name), "##", int(group));
             if (ImGui::MenuItem(label.c_str(), keys_of("regroup_", group, model).c_str()))
                 actions.push_back(GroupOp{group});
         }

@@ -80,7 +80,8 @@ bool line(PaletteEntry entry, bool is_chosen, int number)
     ImGui::TableNextColumn();
     const std::string name = std::exchange(entry.name, in_cell(entry.name));
     if (is_grey) ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
-    const bool is_clicked = ImGui::Selectable(entry.name.c_str(), is_chosen, ImGuiSelectableFlags_SpanAllColumns);
+    const bool is_clicked =
+        ImGui::Selectable(verbatim(entry.name).c_str(), is_chosen, ImGuiSelectableFlags_SpanAllColumns);
     if (is_grey) ImGui::PopStyleColor();
     if (name != entry.name) hint(name.c_str());
     if (is_chosen && !ImGui::IsItemVisible()) ImGui::SetScrollHereY();

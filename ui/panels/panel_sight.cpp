@@ -45,7 +45,7 @@ void kept_views_menu(const Model& model, Actions& actions)
     shortcut_item("keep_view_for_movie", model, actions);
     ImGui::Separator();
     for (const auto& [name, camera] : model.session.cameras) {
-        if (name == "window" || !begin_menu(name.c_str())) continue;
+        if (name == "window" || !begin_menu(verbatim(name).c_str())) continue;
         kept_view(name, model, actions);
         ImGui::EndMenu();
     }

@@ -147,12 +147,12 @@ void active_group(const Model& model, Actions& actions)
     const std::string shown = erases ? "erases any group" : label_of_group(model, group);
     const float room =
         GROUP_WIDTH * ImGui::GetFontSize() - ImGui::GetFrameHeight() - 2.0f * ImGui::GetStyle().FramePadding.x;
-    if (ImGui::BeginCombo("##group", shortened(shown, room).c_str(), ImGuiComboFlags_HeightLarge)) {
+    if (ImGui::BeginCombo("##group", shortened(verbatim(shown), room).c_str(), ImGuiComboFlags_HeightLarge)) {
         for (const uint8_t each : known_groups(model)) {
             ImGui::PushID(int{each});
             swatch(model, each);
             ImGui::SameLine();
-            if (ImGui::Selectable(label_of_group(model, each).c_str(), each == group))
+            if (ImGui::Selectable(verbatim(label_of_group(model, each)).c_str(), each == group))
                 set(actions, model, [&](Session& s) { s.probe.brush.group = each; });
             ImGui::PopID();
         }

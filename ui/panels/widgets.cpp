@@ -201,6 +201,16 @@ std::optional<std::string> name_field(const char* id, const std::string& name)
     return std::string(typed);
 }
 
+std::string verbatim(std::string_view text)
+{
+    std::string label;
+    for (const char character : text) {
+        label += character;
+        if (character == '#') label += '\r';
+    }
+    return label;
+}
+
 std::string shortened(const std::string& text, float width)
 {
     constexpr const char* DOTS = "...";

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include <imgui/imgui.h>
 
@@ -72,6 +73,10 @@ void end_popup();
 /// Enter is pressed or the field loses the keyboard, so that it is one step of the history; without blanks around it,
 /// and only if it is neither empty nor the old one. Escape keeps the old name.
 std::optional<std::string> name_field(const char* id, const std::string& name);
+
+/// Returns what a user wrote, a name or a path, for the label of a widget or the preview of a list, which Dear ImGui
+/// would cut at "##". A carriage return, which is not drawn, follows each "#".
+std::string verbatim(std::string_view text);
 
 /// Returns the text, or the longest beginning of the text that fits `width`, followed by three dots.
 std::string shortened(const std::string& text, float width);

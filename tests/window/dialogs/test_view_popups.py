@@ -1,4 +1,5 @@
-"""Popups of panels: a dialog that a shortcut shows closes them, and so does Escape; names are typed in them."""
+"""Popups of panels: a dialog that a shortcut shows closes them, and so does Escape; names are typed in them. Names are
+shown as they are written, in lists and menus, too."""
 import sys
 import unittest
 from pathlib import Path
@@ -101,6 +102,27 @@ class Popups(Seen):
             self.see("3  root", "Side panel")
         self.finish()
         self.assertEqual(self.names(), ["vein 1", "leaf", "stalk"])
+
+    def test_names_with_signs_are_shown_in_full(self):
+        # Dear ImGui would end the labels of its widgets before "##".
+        session = self.write_ball(groups={"3": {"name": "vein##x###y"}}, cameras={"top##1": {"side": "top"}})
+        session = session.rename(self.folder / "ball##1.json")
+        name = "3  vein##x###y"
+        self.open_scan(session, preferences={**only_panel("groups"), "recent": [{"path": str(session)}]})
+        self.see(name, "Side panel")
+        self.click_on(name, "Tools")
+        self.see(name, "##Combo_00")
+        self.press("Escape")
+        self.see_no_more("", "##Combo_00")
+        for path, words in ((("Paint",), name), (("View", "Kept views"), "top##1"), (("View", "Look from"), "top##1"),
+                            (("File", "Open recent"), str(session))):
+            self.click_on(path[0], "##MainMenuBar")
+            for entry in path[1:]:
+                self.click_on(entry, "##Menu_00")
+            self.see(words, f"##Menu_{len(path) - 1:02}")
+            self.press("Escape")
+            self.see_no_more("", "##Menu_")
+        self.finish()
 
 
 if __name__ == "__main__":

@@ -392,7 +392,7 @@ void FileChooser::place_list()
     for (size_t i = 0; i < places_.size(); ++i) {
         ImGui::PushID(int(i));
         want_glyphs(places_[i].folder.native());
-        const std::string fitting = shortened(places_[i].name, ImGui::GetContentRegionAvail().x);
+        const std::string fitting = shortened(verbatim(places_[i].name), ImGui::GetContentRegionAvail().x);
         if (ImGui::Selectable(fitting.c_str(), places_[i].folder == list_.folder())) enter(places_[i].folder);
         hint(places_[i].folder.c_str());
         ImGui::PopID();

@@ -53,7 +53,7 @@ bool group_entry(uint8_t group, bool is_chosen, const Groups& groups)
     if (group > 0) swatch(groups, group);
     const std::string label = label_of_group(groups, group);
     want_glyphs(label);
-    const bool is_clicked = ImGui::Selectable(label.c_str(), is_chosen);
+    const bool is_clicked = ImGui::Selectable(verbatim(label).c_str(), is_chosen);
     ImGui::PopID();
     return is_clicked;
 }
@@ -193,7 +193,7 @@ void group_row(const char* name, std::optional<int64_t>& group, const Model& mod
     ImGui::SetNextItemWidth(width_of_value(16.0f));
     const std::string shown = group ? label_of_group(groups, uint8_t(*group)) : none;
     want_glyphs(shown);
-    if (ImGui::BeginCombo("##group", shown.c_str(), ImGuiComboFlags_HeightLarge)) {
+    if (ImGui::BeginCombo("##group", verbatim(shown).c_str(), ImGuiComboFlags_HeightLarge)) {
         if (none && ImGui::Selectable(none, !group)) group.reset();
         if (has_unpainted && group_entry(0, group == 0, groups)) group = 0;
         const auto chosen = uint8_t(group.value_or(0));

@@ -96,7 +96,7 @@ void looks_menu(const Model& model, Actions& actions)
     if (!begin_menu("Looks", model.is_open)) return;
     if (model.looks.empty()) ImGui::TextDisabled("None is saved yet");
     for (const NamedLook& look : model.looks)
-        if (ImGui::MenuItem((look.name + "##look").c_str())) actions.push_back(TakeLook{look.name});
+        if (ImGui::MenuItem((verbatim(look.name) + "##look").c_str())) actions.push_back(TakeLook{look.name});
     ImGui::Separator();
     shortcut_item("keep_look", model, actions);
     hint("Names and colours of groups, the light and the transfer function, for the next scan.");
@@ -104,7 +104,7 @@ void looks_menu(const Model& model, Actions& actions)
     hint("A look in a file, as those that were saved in one. Or drop it on the window.");
     if (begin_menu("Remove", !model.looks.empty())) {
         for (const NamedLook& look : model.looks)
-            if (ImGui::MenuItem(look.name.c_str())) actions.push_back(ForgetLook{look.name});
+            if (ImGui::MenuItem(verbatim(look.name).c_str())) actions.push_back(ForgetLook{look.name});
         ImGui::EndMenu();
     }
     ImGui::EndMenu();

@@ -59,11 +59,11 @@ bool choice_field(const char* label, const char* key, std::string& value)
     const std::string title =
         at != found->values.end() ? found->titles[size_t(at - found->values.begin())] : "choose one of them";
     bool is_changed = false;
-    if (!ImGui::BeginCombo(label, value.empty() || at != found->values.end() ? title.c_str() : value.c_str()))
-        return false;
+    const std::string shown = verbatim(value.empty() || at != found->values.end() ? title : value);
+    if (!ImGui::BeginCombo(label, shown.c_str())) return false;
     for (size_t i = 0; i < found->values.size(); ++i) {
         want_glyphs(found->titles[i]);
-        if (!ImGui::Selectable(found->titles[i].c_str(), found->values[i] == value)) continue;
+        if (!ImGui::Selectable(verbatim(found->titles[i]).c_str(), found->values[i] == value)) continue;
         value = found->values[i];
         is_changed = true;
     }

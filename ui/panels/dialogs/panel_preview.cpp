@@ -167,7 +167,7 @@ void found_row()
         const FoundFile& file = asking.found[i];
         ImGui::PushID(int(i));
         want_glyphs(file.name);
-        if (ImGui::Selectable((file.name + "   " + file.about).c_str(), asking.path == file.path.string(), 0,
+        if (ImGui::Selectable(verbatim(file.name + "   " + file.about).c_str(), asking.path == file.path.string(), 0,
                               {26.0f * ImGui::GetFontSize(), 0.0f}))
             asking.path = file.path.string();
         ImGui::PopID();

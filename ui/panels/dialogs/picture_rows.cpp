@@ -175,7 +175,7 @@ void views_rows(MovieForm& form, const Model& model)
     ImGui::SetNextItemWidth(10.0f * ImGui::GetFontSize());
     if (ImGui::BeginCombo("##view", "Add a view")) {
         for (const std::string& name : camera_names(model.session))
-            if (ImGui::Selectable(name.c_str())) form.views.push_back(name);
+            if (ImGui::Selectable(verbatim(name).c_str())) form.views.push_back(name);
         ImGui::EndCombo();
     }
     hint("Views that were kept (View > Kept views) and sides; the movie slows down at each.");

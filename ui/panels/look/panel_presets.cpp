@@ -80,7 +80,7 @@ void draw_colors(const TransferFunction& function, const VolumeStatistics& stati
 bool preset_row(const std::string& name, const TransferFunction& function, const Model& model)
 {
     const float width = ImGui::CalcTextSize(name.c_str()).x + (COLORS_WIDTH + 1.0f) * ImGui::GetFontSize();
-    const bool is_chosen = ImGui::Selectable(name.c_str(), false, ImGuiSelectableFlags_None,
+    const bool is_chosen = ImGui::Selectable(verbatim(name).c_str(), false, ImGuiSelectableFlags_None,
                                              {std::max(width, ImGui::GetContentRegionAvail().x), 0.0f});
     draw_colors(function, model.statistics);
     return is_chosen;

@@ -29,7 +29,7 @@ void device_list(const Model& model, const HandView& hand, Actions& actions)
         const bool is_mouse = device.kind == DeviceKind::mouse;
         const bool is_used = device.id == hand.in_use || (is_mouse && !hand.moves_probe && hand.in_use.empty());
         ImGui::PushID(device.id.c_str());
-        if (ImGui::RadioButton(name_in_words(device.name, device.serial).c_str(), is_used))
+        if (ImGui::RadioButton(verbatim(name_in_words(device.name, device.serial)).c_str(), is_used))
             actions.emplace_back(UseDevice{device.id});
         if (!device.connection.empty()) hint(device.connection.c_str());
         ImGui::Indent();

@@ -90,14 +90,14 @@ void groups(const Model& model, Actions& actions)
                    (group == 0 ? std::string("unpainted") : group_of(model.session.groups, group).name);
     label("Feels");
     ImGui::SetNextItemWidth(-1.0f);
-    const bool is_open = ImGui::BeginCombo("##groups", preview.c_str());
+    const bool is_open = ImGui::BeginCombo("##groups", verbatim(preview).c_str());
     hint("Colour groups that are felt. New paint and offsets are felt at once.");
     if (!is_open) return;
     if (ImGui::Selectable("everything", felt.empty(), ImGuiSelectableFlags_DontClosePopups))
         set(actions, model, [&](Session& s) { s.probe.touch.groups.clear(); });
     const auto row = [&](uint8_t group, const std::string& name) {
         bool is_felt = std::ranges::find(felt, group) != felt.end();
-        if (!ImGui::Checkbox(sentence(name, "##", int(group)).c_str(), &is_felt)) return;
+        if (!ImGui::Checkbox(sentence(verbatim(name), "##", int(group)).c_str(), &is_felt)) return;
         set(actions, model, [&](Session& s) {
             std::vector<uint8_t>& all = s.probe.touch.groups;
             std::erase(all, group);
@@ -106,7 +106,8 @@ void groups(const Model& model, Actions& actions)
         });
     };
     row(0, "unpainted");
-    for (const auto& [number, settings] : model.session.groups) row(number, settings.name);
+    for (const auto& [number, settings] : model.session.groups)
+        row(number, group_of(model.session.groups, number).name);
     ImGui::EndCombo();
 }
 
