@@ -162,6 +162,16 @@ class Photographs(Seen):
     def test_light_and_large(self):
         self.check_look(2, "light")
 
+    def test_large_words_have_room_in_a_small_window(self):
+        self.scale, self.theme, self.wrong, self.size = 2, "dark", [], (640, 400)
+        self.open_scan(self.write_ball(), "--size", "1280x800", preferences={"scale": 2, "hints_seen": 3})
+        self.see("Logarithmic", "Side panel")
+        self.photograph("small")
+        bars = [what for what in self.wrong if "in Tools " in what or "in Side panel " in what]
+        self.assertEqual(bars, [])
+        self.assertEqual([sign for sign in "<>+" if not self.seen(sign, "Tools")], [])
+        self.finish()
+
     def test_start_page(self):
         self.check_start(1, "dark")
 

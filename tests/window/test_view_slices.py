@@ -52,6 +52,20 @@ class Slices(Seen):
         self.assertEqual(self.saved(session)["view"]["slices"]["zoom"], 1.0)
         self.finish()
 
+    def test_the_bar_tells_what_the_mouse_does_over_each_pane(self):
+        self.scan()
+        self.press("F6")
+        self.see("z ")
+        self.do("mousemove", *self.in_slice(), pause_s=0)
+        self.see("Mouse  left: set the cross-hairs, ...", "Tools")   # whole parts
+        self.do("mousemove", *self.middle_of(self.see_at_rest("Mouse", "Tools")), pause_s=0)
+        self.see("Over a slice, left: set the cross-hairs", "##Tooltip")
+        self.see_frames()
+        told = " ".join(seen["text"] for seen in self.seen(window="##Tooltip"))
+        for words in ("Over the volume, left: turn", "wheel: next slice", "Ctrl + wheel: zoom"):
+            self.assertIn(words, told)
+        self.finish()
+
     def slices(self):
         """The numbers of the slices that their panes state, by axis."""
         return {seen["text"][0]: int(seen["text"].split()[1]) for seen in self.seen()

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include <imgui/imgui.h>
 
@@ -22,13 +23,27 @@ namespace shvr::ui {
 
 namespace {
 
-constexpr float NAMED_FROM = 74.0f;   ///< minimum width, in font sizes, at which tools show their names
-constexpr float GROUP_WIDTH = 13.0f;  ///< width of the active group's name, in font sizes
+constexpr float NAMED_FROM = 74.0f;  ///< minimum width, in font sizes, at which tools show their names
+constexpr float GROUP_WIDTH = 13.0f, MIN_GROUP_WIDTH = 4.0f;  ///< widths of the active group's name, in font sizes
+constexpr float GAP = 0.25f;                                  ///< between neighbouring buttons, in font sizes
+constexpr const char *CLIP_BOX = "Clip box", *CUT_PLANE = "Cut plane";
 
 /// Returns the tooltip of a tool: its name, its key, and the effect of a click.
 std::string explanation(const ToolRow& row, const Keymap& keymap)
 {
     return sentence(row.name, key_in_brackets(row.shortcut, keymap), "\n", row.hint);
+}
+
+float sign_size()
+{
+    return 1.1f * ImGui::GetFontSize();
+}
+
+float signed_width(const char* name, bool has_name)
+{
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const float words = has_name ? ImGui::CalcTextSize(name).x + style.ItemInnerSpacing.x : 0.0f;
+    return 2.0f * style.FramePadding.x + sign_size() + words;
 }
 
 /// Draws a button with a sign, and its name if there is room; one in use has another background. Returns whether it was
@@ -37,11 +52,9 @@ template <class DrawSign>
 bool signed_button(const char* name, bool has_name, bool is_used, const DrawSign& draw)
 {
     const ImGuiStyle& style = ImGui::GetStyle();
-    const float height = ImGui::GetFrameHeight(), sign = ImGui::GetFontSize() * 1.1f;
-    const float words = has_name ? ImGui::CalcTextSize(name).x + style.ItemInnerSpacing.x : 0.0f;
-    const float width = 2.0f * style.FramePadding.x + sign + words;
+    const float height = ImGui::GetFrameHeight(), sign = sign_size();
     ImGui::PushStyleColor(ImGuiCol_Button, color_of(is_used ? ColorRole::chosen : ColorRole::bar));
-    const bool is_pressed = ImGui::Button(sentence("##", name).c_str(), {width, height});
+    const bool is_pressed = ImGui::Button(sentence("##", name).c_str(), {signed_width(name, has_name), height});
     ImGui::PopStyleColor();
     const ImVec2 begin = ImGui::GetItemRectMin();
     ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -68,7 +81,7 @@ void tool_button(const ToolRow& row, bool has_name, const Model& model, Actions&
         ImGui::GetWindowDrawList()->AddRectFilled({begin.x, end.y - stroke}, end, shade_of(ColorRole::accent_strong));
     }
     ImGui::PopID();
-    ImGui::SameLine(0.0f, 0.25f * ImGui::GetFontSize());
+    ImGui::SameLine(0.0f, GAP * ImGui::GetFontSize());
 }
 
 /// Draws a square in the group's colour; the eraser's square is crossed out.
@@ -104,31 +117,50 @@ void step_button(const char* sign, const char* id, const Model& model, Actions& 
     const float size = ImGui::GetFrameHeight();
     if (ImGui::Button(sentence(sign, "##", id).c_str(), {size, size})) actions.push_back(shortcut->action(model, 1.0));
     hint(name_with_key(id, model.keymap).c_str());
-    ImGui::SameLine(0.0f, 0.25f * ImGui::GetFontSize());
+    ImGui::SameLine(0.0f, GAP * ImGui::GetFontSize());
+}
+
+/// What has room right of the tools.
+struct Room {
+    bool has_names = true;  ///< on the buttons of cuts
+    float group_width = 0.0f;
+};
+
+/// `width`: from the first button of cuts to the end of the bar.
+Room room_in(float width)
+{
+    const float font = ImGui::GetFontSize(), gap = GAP * font;
+    const float steps_and_swatch = 4.0f * ImGui::GetFrameHeight() + 5.0f * gap;
+    const auto room_for_group = [&](bool has_names) {
+        const float cuts = signed_width(CLIP_BOX, has_names) + gap + signed_width(CUT_PLANE, has_names) + font;
+        return width - cuts - steps_and_swatch;
+    };
+    const bool has_names = room_for_group(true) >= GROUP_WIDTH * font;
+    return {has_names, std::clamp(room_for_group(has_names), MIN_GROUP_WIDTH * font, GROUP_WIDTH * font)};
 }
 
 /// Draws the button that shows the clip box with its handles.
-void clip_button(const Model& model, Actions& actions)
+void clip_button(bool has_name, const Model& model, Actions& actions)
 {
     const Shortcut* const shortcut = shortcut_named("cut_box");
     if (!shortcut) return;
     const bool is_shown = model.session.view.cut_box;
     ImGui::BeginDisabled(!model.is_open);
-    if (signed_button("Clip box", true, is_shown, draw_clip_box)) actions.push_back(shortcut->action(model, 1.0));
+    if (signed_button(CLIP_BOX, has_name, is_shown, draw_clip_box)) actions.push_back(shortcut->action(model, 1.0));
     ImGui::EndDisabled();
     hint((name_with_key("cut_box", model.keymap) + "\nDrag a handle to cut the volume open.").c_str());
-    ImGui::SameLine(0.0f, 0.25f * ImGui::GetFontSize());
+    ImGui::SameLine(0.0f, GAP * ImGui::GetFontSize());
 }
 
 /// Draws the button that adds the oblique cutting plane, or removes it.
-void plane_button(const Model& model, Actions& actions)
+void plane_button(bool has_name, const Model& model, Actions& actions)
 {
     const bool has_plane = model.session.cut.plane_normal.has_value();
     const char* const id = has_plane ? "remove_oblique_cut" : "oblique_cut";
     const Shortcut* const shortcut = shortcut_named(id);
     if (!shortcut) return;
     ImGui::BeginDisabled(!model.is_open);
-    if (signed_button("Cut plane", true, has_plane, draw_cut_plane)) actions.push_back(shortcut->action(model, 1.0));
+    if (signed_button(CUT_PLANE, has_name, has_plane, draw_cut_plane)) actions.push_back(shortcut->action(model, 1.0));
     ImGui::EndDisabled();
     hint((name_with_key(id, model.keymap) +
           (has_plane ? "" : "\nIt removes the half towards you. Drag its handles to move and tilt it."))
@@ -136,17 +168,16 @@ void plane_button(const Model& model, Actions& actions)
     ImGui::SameLine(0.0f, ImGui::GetFontSize());
 }
 
-void active_group(const Model& model, Actions& actions)
+void active_group(float width, const Model& model, Actions& actions)
 {
     const uint8_t group = model.brush().group;
     step_button("<", "previous_group", model, actions);
     swatch(model, model.session.probe.painted_group());
-    ImGui::SameLine(0.0f, 0.25f * ImGui::GetFontSize());
-    ImGui::SetNextItemWidth(GROUP_WIDTH * ImGui::GetFontSize());
+    ImGui::SameLine(0.0f, GAP * ImGui::GetFontSize());
+    ImGui::SetNextItemWidth(width);
     const bool erases = model.tool() == Tool::erase;
     const std::string shown = erases ? "erases any group" : label_of_group(model, group);
-    const float room =
-        GROUP_WIDTH * ImGui::GetFontSize() - ImGui::GetFrameHeight() - 2.0f * ImGui::GetStyle().FramePadding.x;
+    const float room = width - ImGui::GetFrameHeight() - 2.0f * ImGui::GetStyle().FramePadding.x;
     if (ImGui::BeginCombo("##group", shortened(verbatim(shown), room).c_str(), ImGuiComboFlags_HeightLarge)) {
         for (const uint8_t each : known_groups(model)) {
             ImGui::PushID(int{each});
@@ -160,12 +191,40 @@ void active_group(const Model& model, Actions& actions)
     }
     hint(erases ? "The active group stays as it is, and is painted again with another tool."
                 : (shown + "\nThe active group: what painting and tracing belong to.").c_str());
-    ImGui::SameLine(0.0f, 0.25f * ImGui::GetFontSize());
+    ImGui::SameLine(0.0f, GAP * ImGui::GetFontSize());
     step_button(">", "next_group", model, actions);
     step_button("+", "new_group", model, actions);
 }
 
-/// Shows the functions of the mouse buttons, shortened to the available width; a tooltip shows all of them.
+/// Returns as many parts of the words, which commas separate, as have room; empty: none has.
+std::string parts_within(float width, const std::string& words)
+{
+    if (ImGui::CalcTextSize(words.c_str()).x <= width) return words;
+    for (size_t end = words.size(); (end = words.substr(0, end).rfind(", ")) != std::string::npos;) {
+        const std::string parts = words.substr(0, end) + ", ...";
+        if (ImGui::CalcTextSize(parts.c_str()).x <= width) return parts;
+    }
+    return {};
+}
+
+/// Describes the mouse over each kind of pane that is shown, in a line each: the pointer that rests on the bar is over
+/// none of them.
+std::string mouse_over_panes(const Model& model)
+{
+    constexpr std::pair<Pane::Kind, const char*> PLACES[] = {{Pane::Kind::main, "Over the volume, "},
+                                                             {Pane::Kind::slice, "Over a slice, "},
+                                                             {Pane::Kind::map, "Over a map, "}};
+    std::string lines;
+    for (const auto& place : PLACES) {
+        const auto is_it = [&](const auto& part) { return part.pane.kind == place.first; };
+        if (place.first != Pane::Kind::main && std::ranges::none_of(model.panes, is_it)) continue;
+        if (!lines.empty()) lines += '\n';
+        lines += place.second + mouse_in_words(model.tool(), place.first, model.preferences.key_set);
+    }
+    return lines;
+}
+
+/// Shows the functions of the mouse buttons, as far as they have room; a tooltip shows all of them.
 void mouse_words(const Model& model)
 {
     const bool is_over_pane = model.pointer && model.pointer->pane < model.panes.size();
@@ -178,8 +237,14 @@ void mouse_words(const Model& model)
     ImGui::SameLine(0.0f, ImGui::GetFontSize());
     ImGui::AlignTextToFramePadding();
     const TextIn small(TextRole::small);
-    ImGui::TextDisabled("%s", shortened("Mouse  " + words, ImGui::GetContentRegionAvail().x).c_str());
-    hint(sentence(words, "\n", row_of(model.tool()).hint, "\nAlt + left drag turns, Shift + left drag moves.").c_str());
+    const float room = ImGui::GetContentRegionAvail().x;
+    std::string shown = parts_within(room, "Mouse  " + words);
+    if (shown.empty()) shown = parts_within(room, "Mouse (?)");
+    if (shown.empty()) return;
+    ImGui::TextDisabled("%s", shown.c_str());
+    hint(sentence(cuts || points ? words : mouse_over_panes(model), "\n", row_of(model.tool()).hint,
+                  "\nAlt + left drag turns, Shift + left drag moves.")
+             .c_str());
 }
 
 }  // namespace
@@ -206,9 +271,10 @@ void tool_bar(const ImVec2& at, float width, const Model& model, Actions& action
     const bool has_names = width >= NAMED_FROM * ImGui::GetFontSize();
     for (const ToolRow& row : tool_rows()) tool_button(row, has_names, model, actions);
     ImGui::SameLine(0.0f, ImGui::GetFontSize());
-    clip_button(model, actions);
-    plane_button(model, actions);
-    active_group(model, actions);
+    const Room room = room_in(ImGui::GetContentRegionAvail().x);
+    clip_button(room.has_names, model, actions);
+    plane_button(room.has_names, model, actions);
+    active_group(room.group_width, model, actions);
     mouse_words(model);
     ImGui::End();
     ImGui::PopStyleColor();

@@ -55,10 +55,10 @@ std::string mouse_in_words(Tool tool, Pane::Kind over, KeySet set)
     const char* const right = tool == Tool::turn && set == KeySet::thesis ? "paint" : row.right;
     if (over == Pane::Kind::map) return "left: turn, Shift + left or middle: move, wheel: closer or farther";
     if (over == Pane::Kind::slice && tool == Tool::turn)
-        return sentence("left: set the cross-hairs, right: ", right,
-                        ", middle: move, wheel: next slice, Ctrl + wheel: zoom");
+        return sentence("left: set the cross-hairs, wheel: next slice, right: ", right,
+                        ", middle: move, Ctrl + wheel: zoom");
     if (over == Pane::Kind::slice)
-        return sentence("left: ", row.left, ", right: contrast, middle: move, wheel: next slice, Ctrl + wheel: zoom");
+        return sentence("left: ", row.left, ", wheel: next slice, right: contrast, middle: move, Ctrl + wheel: zoom");
     if (tool == Tool::turn) return sentence("left: ", row.left, ", right: ", right, ", middle: move, wheel: zoom");
     return sentence("left: ", row.left, ", right or middle: ", row.right, ", wheel: zoom");
 }

@@ -807,8 +807,8 @@ TEST_CASE("The bar tells what each tool's buttons do, and every tool has a key")
     CHECK(mouse_in_words(Tool::paint) == "left: paint, right or middle: turn, wheel: zoom");
     CHECK(mouse_in_words(Tool::turn) == "left: turn, right: zoom, middle: move, wheel: zoom");
     CHECK(mouse_in_words(Tool::trace, Pane::Kind::slice) ==
-          "left: add / pick / drag, right: contrast, middle: move, wheel: next slice, Ctrl + wheel: zoom");
-    CHECK(mouse_in_words(Tool::turn, Pane::Kind::slice).starts_with("left: set the cross-hairs"));
+          "left: add / pick / drag, wheel: next slice, right: contrast, middle: move, Ctrl + wheel: zoom");
+    CHECK(mouse_in_words(Tool::turn, Pane::Kind::slice).starts_with("left: set the cross-hairs, wheel: next slice"));
     CHECK(mouse_in_words(Tool::turn, Pane::Kind::main, KeySet::thesis) ==
           "left: turn, right: paint, middle: move, wheel: zoom");
     CHECK(mouse_in_words(Tool::turn, Pane::Kind::map).starts_with("left: turn"));

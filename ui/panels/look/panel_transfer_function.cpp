@@ -71,8 +71,12 @@ void scale_and_help(const Model& model, CurveState& state, Actions& actions)
                 ", whose bar stands at the end of the axis.";
     hint(bins.c_str());
     point_buttons(model, state, actions);
-    ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize("How to edit (?)").x);
-    ImGui::TextDisabled("How to edit (?)");
+    ImGui::SameLine();
+    const char* help = "How to edit (?)";
+    if (ImGui::CalcTextSize(help).x > ImGui::GetContentRegionAvail().x) help = "(?)";
+    if (ImGui::CalcTextSize(help).x > ImGui::GetContentRegionAvail().x) ImGui::NewLine();
+    ImGui::SetCursorPosX(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(help).x);
+    ImGui::TextDisabled("%s", help);
     hint(
         "Left to right: the file's intensities, over how often they occur. Upwards: opacity, as its square root, so "
         "that small opacities can be seen and dragged.\n\n"
