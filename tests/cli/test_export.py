@@ -206,8 +206,8 @@ class Export(CliTest):
             self.export("--mask", self.folder / name)
             for size, spacing, unit, says in [
                     ([24, 20, 41], self.SPACING, "mm", ["24 20 40", "24 20 41"]),
-                    (self.SIZE, [0.5, 1, 2.5], "mm", ["0.5 1 2 mm", "0.5 1 2.5 mm"]),
-                    (self.SIZE, self.SPACING, "um", ["0.5 1 2 mm", "0.5 1 2 um"])]:
+                    (self.SIZE, [0.5, 1, 2.5], "mm", ["0.5 x 1 x 2 mm", "0.5 x 1 x 2.5 mm"]),
+                    (self.SIZE, self.SPACING, "um", ["0.5 x 1 x 2 mm", "0.5 x 1 x 2 µm"])]:
                 with self.subTest(name=name, size=size, spacing=spacing, unit=unit):
                     other = self.write_session("other.json", annotation={"mask": name}, volume={
                         "procedural": "constant", "size": size, "spacing": spacing, "unit": unit})
@@ -321,7 +321,7 @@ class Export(CliTest):
             again = (self.folder / "b.offset").read_bytes()
             self.assertEqual((again[:2], again[2:]), (struct.pack("<h", 7), saved[2:]))
             for size, spacing, says in [([24, 20, 41], self.SPACING, ["24 20 40", "24 20 41"]),
-                                        (self.SIZE, [0.5, 1, 2.5], ["0.5 1 2 mm", "0.5 1 2.5 mm"])]:
+                                        (self.SIZE, [0.5, 1, 2.5], ["0.5 x 1 x 2 mm", "0.5 x 1 x 2.5 mm"])]:
                 wrong = self.write_session("wrong.json", annotation={"density": name}, volume={
                     "procedural": "constant", "size": size, "spacing": spacing, "unit": "mm"})
                 self.check_refused("export", wrong, "--offset", self.folder / "c.offset", says=[name, *says])
