@@ -138,7 +138,9 @@ void Photographer::add_loading(std::vector<Jobs::State>& states) const
 {
     if (!document_ || !has_large()) return;
     const Shot& shot = *screenshots_.large();
-    states.push_back({.number = PICTURE_JOB, .what = shot.what(), .fraction = shot.progress()});
+    const Screen& screen = document_->screen;
+    const char* const when = screen.complete() || screen.is_held() ? "" : ", when the picture in the window is sharp";
+    states.push_back({.number = PICTURE_JOB, .what = shot.what() + when, .fraction = shot.progress()});
 }
 
 void Photographer::act(const Screenshot& action)

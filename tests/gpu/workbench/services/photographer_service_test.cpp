@@ -23,7 +23,11 @@ struct PhotographerAlone : DeskWithScan {
 
     void finish()
     {
-        until([&] { photographer.advance(); }, [&] { return !photographer.has_large(); });
+        const auto step = [&] {
+            document().screen.advance();  // takes what changed; large pictures wait for that
+            photographer.advance();
+        };
+        until(step, [&] { return !photographer.has_large(); });
     }
     /// What the picture shows of the present look.
     Image8 figure(const char* name)
@@ -75,6 +79,12 @@ TEST_CASE_FIXTURE(PhotographerAlone, "photographer: only its own number cancels 
     CHECK_FALSE(photographer.has_large());
     CHECK_FALSE(photographer.cancel(states[0].number));
     photographer.act(Screenshot{.is_large = true});
+    CHECK_FALSE(contains(states[0].what, "when the picture in the window is sharp"));
+    states.clear();
+    document().annotator.edit_trace("a node", {TraceNodeChange{0, {}, TraceNode{{20.0, 18.0, 16.0}, 4.0, 2}}});
+    renderer().scene().show_surfaces({}, trace(), document().session.groups);
+    photographer.add_loading(states);
+    CHECK(contains(states.at(0).what, "when the picture in the window is sharp"));  // which shows no node yet
     document().annotator.begin_stroke(document().stroke());
     photographer.advance();
     CHECK_FALSE(photographer.has_large());
