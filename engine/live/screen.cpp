@@ -90,6 +90,7 @@ void Screen::take_changed()
     renderer_.scene().advance();
     for (const Scene::Changed& what : renderer_.scene().take_changed()) switch (what.cause) {
             case Scene::Cause::edit:
+                is_held_ = false;
                 for (const Part& part : parts_) part.view->changed(what.voxels);
                 break;
             case Scene::Cause::bricks:
@@ -131,6 +132,8 @@ void Screen::advance()
 
 void Screen::submit_ahead(double ahead_ms)
 {
+    is_held_ = is_held_ && std::ranges::none_of(parts_, [](const Part& part) { return part.view->lags(); });
+    if (is_held_) return;
     const auto first = [&](const auto& wants) {
         size_t part = 0;
         while (part < parts_.size() && !wants(part)) ++part;
@@ -140,8 +143,7 @@ void Screen::submit_ahead(double ahead_ms)
     const size_t next = unsketched < parts_.size() ? unsketched : first([&](size_t part) {
         return !parts_[part].view->is_finished() || (part == turn_ && is_loading());
     });
-    is_held_ = is_held_ && unsketched == parts_.size();
-    if (next == parts_.size() || is_held_) return;
+    if (next == parts_.size()) return;
     // Only one view draws at a time, so that the total work in flight stays small.
     for (size_t part = 0; part < parts_.size(); ++part)
         if (part != next && !parts_[part].view->is_idle()) return;

@@ -32,7 +32,7 @@ public:
     /// that long for something else.
     void submit_ahead(double ahead_ms);
     /// While held, up-to-date panes are not made sharper: that would request bricks for these panes, and displace
-    /// bricks that another picture waits for. The hold ends when a pane has to follow the user.
+    /// bricks that another picture waits for. The hold ends when a pane has to follow the user, or shows an edit.
     void hold(bool is_held) { is_held_ = is_held; }
     bool is_held() const { return is_held_; }
     void wait();

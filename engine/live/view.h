@@ -70,6 +70,12 @@ public:
     void submit_due(double ahead_ms = 0.0);
     /// Whether the requested sight is shown in the whole picture, even if coarsely.
     bool is_sketched() const { return sight_ == shown_sight_ && !base_.job && !patch_.job && !patch_is_due(); }
+    /// Whether the picture has yet to follow the user: the sight or the probe. Bricks and light do not matter.
+    bool lags() const
+    {
+        return sight_ != shown_sight_ || base_.job || patch_.job || patch_.shown.sight != shown_sight_ ||
+               patch_.shown.probe != probe_;
+    }
     /// Whether no work is due or in flight. Bricks may still arrive.
     bool is_finished() const;
     bool is_idle() const { return running_.empty(); }

@@ -255,10 +255,7 @@ void PictureJob::step(bool waits)
     // Draws ahead on GPUs only: a CPU device also copies the pixels, so drawing ahead would only take more memory.
     const bool is_paged = scene().volume().counts().has_value(), is_ahead = !is_paged && !scene().traits().is_cpu;
     try {
-        if (is_ahead)
-            draw_ahead(part);
-        else if (!draw_completely(part, waits))
-            return;
+        if (is_ahead ? !draw_ahead(part, waits) : !draw_completely(part, waits)) return;
     } catch (const gpu::MemoryError& error) {
         rounds_.reset();
         scene().volume().let_rays_wait(false);
@@ -324,17 +321,25 @@ std::vector<gpu::PassReport> PictureJob::draw(const PicturePart& part, WaitingRa
 }
 
 /// Draws a part that is complete after one drawing, and copies the previous part's pixels while the device draws this
-/// part. Waits for the picture's very first part, whose time determines how the other parts are divided.
-void PictureJob::draw_ahead(const PicturePart& part)
+/// part. Waits for the picture's very first part, whose time determines how the other parts are divided. If `waits` is
+/// false, returns false while ambient light remains to be computed: the part is then drawn by a later step.
+bool PictureJob::draw_ahead(const PicturePart& part, bool waits)
 {
     look_at(scene(), look_, pane().shot, part);
     const Progress progress = progress_of(part, 0);
     tell(progress, 0.0);
-    static_cast<void>(renew_occlusion(progress, true));
+    if (!renew_occlusion(progress, waits)) {
+        parts_.push_back(part);
+        return false;
+    }
     UnderWay next = begin(part);
-    if (drawn_pixels_ == 0 && !under_way_) return finish(part, take(std::move(next)));
+    if (drawn_pixels_ == 0 && !under_way_) {
+        finish(part, take(std::move(next)));
+        return true;
+    }
     catch_up();
     under_way_ = std::move(next);
+    return true;
 }
 
 /// Finishes the part in flight, if there is one.

@@ -38,8 +38,8 @@ public:
     /// drawn by rays that wait for bricks. For a resident volume on a GPU, waits only for the previous part, so that
     /// the device stays busy while the previous part's pixels are copied. Delivers the rows of each finished band.
     ///
-    /// If `waits` is false, does not wait for bricks that are being read: the next step continues the same part; other
-    /// callers may set the volume's view and draw in between.
+    /// If `waits` is false, does not wait for bricks that are being read, and computes one slice of ambient light: the
+    /// next step continues the same part; other callers may set the volume's view and draw in between.
     void step(bool waits = true);
     /// Whether the last step left a part unfinished, because its bricks or its ambient light are not available yet.
     bool is_waiting() const { return rounds_.has_value(); }
@@ -66,7 +66,7 @@ private:
     UnderWay begin(const PicturePart& part, WaitingRays* waiting = nullptr);
     std::vector<gpu::PassReport> take(UnderWay part);
     std::vector<gpu::PassReport> draw(const PicturePart& part, WaitingRays* waiting = nullptr);
-    void draw_ahead(const PicturePart& part);
+    bool draw_ahead(const PicturePart& part, bool waits);
     void catch_up();
     bool draw_completely(const PicturePart& part, bool waits);
     bool draw_rounds(bool waits);

@@ -251,6 +251,7 @@ TEST_CASE_FIXTURE(SlowlyRead, "a large screenshot waits for its bricks beside th
     const Camera other = camera_looking("left", tubes->info());
     const glm::uvec2 pixels(40, 30);
     screen.look(shown, other, pixels, glm::dvec3(64.0));
+    screen.show_probe(ProbeLook{.center = glm::dvec3(64.0), .radius = 6.0});
     const auto settle = [&] {
         while (!screen.complete()) {
             screen.advance();
@@ -266,8 +267,10 @@ TEST_CASE_FIXTURE(SlowlyRead, "a large screenshot waits for its bricks beside th
     std::string said;
     for (int turns = 0; said.empty() && gated->waited_for() == 0; ++turns) {
         REQUIRE(turns < 200'000);
+        const bool is_held = screen.is_held();
         screen.advance();
-        if (was_held && !is_followed) {  // the volume is turned: the window follows, and the picture goes on later
+        CHECK(screen.is_held() == is_held);  // whatever bricks arrive
+        if (was_held && !is_followed) {      // the volume is turned: the window follows, and the picture goes on later
             screen.look_from(camera_looking("top", tubes->info()), glm::dvec3(64.0));
             screen.advance();
             CHECK_FALSE(screen.is_held());

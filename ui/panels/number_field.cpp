@@ -55,8 +55,9 @@ std::string words_of_refusal(const Refusal& refusal)
     if (!refusal.is_whole) return found + "; expected a number such as 1.5 or 1,5";
     if (const std::optional<double> number = typed_number(refusal.text)) {
         const bool is_whole = std::floor(*number) == *number && std::abs(*number) >= MAX_WHOLE;
-        return in_quotes(refusal.text) + (is_whole ? " is too large; expected a smaller number"
-                                                   : " is not a whole number; expected one such as 12");
+        return in_quotes(refusal.text) + (!is_whole       ? " is not a whole number; expected one such as 12"
+                                          : *number > 0.0 ? " is too large; expected a smaller number"
+                                                          : " is too small; expected a larger number");
     }
     return found + "; expected a whole number such as 12";
 }

@@ -138,6 +138,10 @@ bool settings_popup(uint8_t group, const Model& model, GroupSettings& settings, 
     if (renamed) settings.name = *renamed;
     if (ImGui::MenuItem("Belongs to no group", nullptr, false, settings.parent != 0))
         set_parent(group, 0, model, actions);
+    if (ImGui::MenuItem("Default name", nullptr, false, !settings.name.empty())) {
+        settings.name.clear();
+        changed = true;
+    }
     if (ImGui::MenuItem("Default colour", nullptr, false, settings.color.has_value())) {
         settings.color.reset();
         changed = true;

@@ -58,9 +58,13 @@ void SettingsEditor::act(const Set& action)
 {
     if (action.patch.empty()) return log_instead({Set{"{}"}});  // a key for what is so already
     Session after = patched(document_->session, action.patch);
-    if (!after.transfer_preset.empty())
-        after.transfer_function = transfer_function_of(
-            preset_named(desk_.model().presets, std::exchange(after.transfer_preset, {})), document_->statistics);
+    if (!after.transfer_preset.empty()) {
+        const TransferPreset preset = preset_named(desk_.model().presets, std::exchange(after.transfer_preset, {}));
+        after.transfer_function = transfer_function_of(preset, document_->statistics);
+        const std::string patch = patch_between(document_->session, after);
+        // A log can be replayed on a machine without this preset.
+        if (preset.is_own) log_instead({Set{patch.empty() ? "{}" : patch}});
+    }
     document_->choose_thresholds(after);
     document_->choose_for_volume(after);
     const Session before = document_->session;

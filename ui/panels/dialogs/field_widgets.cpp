@@ -29,7 +29,7 @@ ImGuiID chooser_of = 0;
 FieldKeys first_keys;  ///< gives the keyboard to the first path of a dialog that has just opened
 
 /// In font sizes. A value with less room than MIN_BESIDE is below its name.
-constexpr float NAME_COLUMN = 9.0f, VALUE_WIDTH = 26.0f, MIN_BESIDE = 11.0f;
+constexpr float NAME_COLUMN = 9.0f, VALUE_WIDTH = 26.0f, MIN_BESIDE = 12.5f;
 constexpr float MIN_DIALOG = 18.0f;  ///< width of the narrowest dialog, in font sizes
 
 /// Draws the name at the left. Returns the label for the next widget: an id without visible text.

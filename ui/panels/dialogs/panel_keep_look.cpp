@@ -76,6 +76,7 @@ void keep_look_dialog(const Model& model, Actions& actions)
     }
     if (!was_shown) return;
     ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
+    size_dialog();
     bool is_over = true;
     if (begin_dialog(KEEP_TITLE, ImGuiWindowFlags_AlwaysAutoResize)) {
         const bool is_entered = look_name_row(name);

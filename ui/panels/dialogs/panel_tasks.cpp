@@ -139,7 +139,7 @@ public:
         const bool begins = model.dialog == dialog_ && !std::exchange(is_shown_, true);
         if (begins) {
             form_ = suggested();
-            is_entered_ = is_known_ = false;
+            is_entered_ = is_refused_ = is_known_ = false;
             asked_of_.clear();  // files may have come and gone since it was last shown
             ImGui::OpenPopup(Task::TITLE);
         }
@@ -152,13 +152,14 @@ public:
             if (model.dialog == dialog_) actions.push_back(ShowDialog{});
             return;
         }
-        const bool has_chooser = draw_form(form_, model, known_.scan, begins);
+        const bool takes_keys = std::exchange(is_refused_, false) || begins;
+        const bool has_chooser = draw_form(form_, model, known_.scan, takes_keys);
         if constexpr (std::is_same_v<Form, MovieForm>)
             if (std::exchange(form_.keeps_shown, false)) actions.push_back(KeepCamera{.name = {}, .with_look = true});
         const Task task = task_of(form_, base_of(model).parent_path());
         const std::string why = refusal(model, task);
         dialog_note(about(form_, model, known_.scan), why);
-        if (why.empty())
+        if (why.empty() && is_known_)
             for (const std::string& warning : known_.warnings) dialog_note({}, warning);
         const ImGuiViewport& screen = *ImGui::GetMainViewport();
         keep_above(screen.WorkPos.y + screen.WorkSize.y);
@@ -178,6 +179,7 @@ private:
         const ImVec2 button{6.0f * ImGui::GetFontSize(), 0.0f};
         // Enter waits for the disk's answer to what was typed before it.
         if (!has_chooser && enter_confirms()) is_entered_ = true;
+        is_refused_ = is_entered_ && !why.empty() && why != WAITS;  // a field lets go of the keyboard at Enter
         const bool confirms = std::exchange(is_entered_, is_entered_ && why == WAITS) && why.empty();
         ImGui::BeginDisabled(!why.empty());
         const bool is_confirmed = ImGui::Button(verb_, button) || confirms;
@@ -254,6 +256,7 @@ private:
     Asked<Verdict> asked_;
     Verdict known_;
     bool is_entered_ = false;  ///< Enter was pressed, and the answer of the disk is still awaited
+    bool is_refused_ = false;  ///< Enter was pressed and refused: the first field gets the keyboard again
     bool is_known_ = false;    ///< `known_` answers for the current task
     std::string asked_of_;
     double asked_s_ = 0.0;

@@ -153,10 +153,15 @@ bool view_row(MovieForm& form, size_t view, const Session& session)
     const bool is_moved = ImGui::SmallButton("Up");
     ImGui::EndDisabled();
     ImGui::SameLine();
-    ImGui::TextUnformatted(name.c_str());
-    if (view > 0)
-        if (const std::string change = change_between(session, form.views[view - 1], name); !change.empty())
-            words_after(change.c_str());
+    const std::string change = view > 0 ? change_between(session, form.views[view - 1], name) : std::string();
+    const float room = ImGui::GetContentRegionAvail().x;
+    ImGui::TextUnformatted(shortened(name, change.empty() ? room : 0.5f * room).c_str());
+    hint(name.c_str());
+    if (!change.empty()) {
+        ImGui::SameLine();
+        ImGui::TextDisabled("%s", shortened(change, ImGui::GetContentRegionAvail().x).c_str());
+        hint(change.c_str());
+    }
     if (is_moved) move_up(form, view);
     return is_removed;
 }

@@ -7,9 +7,11 @@
 #include <imgui/imgui.h>
 #include <imgui/imgui_stdlib.h>
 
+#include "engine/base/text.h"
 #include "engine/workbench/actions/action_rows.h"
 #include "engine/workbench/edits/edit.h"
 #include "ui/panels/color_field.h"
+#include "ui/panels/dialogs/field_widgets.h"
 #include "ui/panels/field_keys.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
@@ -116,38 +118,42 @@ bool list(const Model& model, Actions& actions)
 }
 
 /// Returns the reason why the typed name is refused; empty: it is accepted.
-std::string why_not_named(const Model& model)
+std::string why_not_named(const std::string& name, const Model& model)
 {
-    const auto is_it = [](const TransferPreset& preset) { return preset.name == asked.name; };
-    const auto there = std::ranges::find_if(model.presets, is_it);
-    if (asked.name.empty()) return "type a name";
+    if (name.empty()) return "Type a name.";
+    if (std::string why = why_no_name(name, "transfer function"); !why.empty()) return why;
+    const auto there = std::ranges::find(model.presets, name, &TransferPreset::name);
     if (there == model.presets.end()) return {};
-    if (!there->is_own) return "a supplied transfer function has this name";
-    return asked.renamed.empty() ? "" : "one that is kept has this name";
+    if (!there->is_own) return "A supplied transfer function has this name.";
+    return asked.renamed.empty() ? "" : "One that is kept has this name.";
 }
 
 void name_dialog(const Model& model, Actions& actions)
 {
+    size_dialog();
     if (!begin_dialog(ASK_NAME, ImGuiWindowFlags_AlwaysAutoResize)) return;
     static FieldKeys keys;
     keys.before_field(ImGui::IsWindowAppearing());
     ImGui::SetNextItemWidth(18.0f * ImGui::GetFontSize());
     const bool is_entered = ImGui::InputText("##name", &asked.name, ImGuiInputTextFlags_EnterReturnsTrue);
     keys.after_field();
-    const std::string why = why_not_named(model);
-    const auto is_own = [](const TransferPreset& preset) { return preset.is_own && preset.name == asked.name; };
-    const bool replaces = asked.renamed.empty() && std::ranges::any_of(model.presets, is_own);
-    ImGui::TextDisabled("%s", !why.empty() ? why.c_str()
-                              : replaces   ? "The one that is kept under this name is replaced."
-                                           : "It is kept for all scans, scaled to their intensities.");
+    const std::string name(trimmed(asked.name));
+    const std::string why = why_not_named(name, model);
+    const auto is_own = [&](const TransferPreset& preset) { return preset.is_own && preset.name == name; };
+    if (name.empty())
+        dialog_note(why, {});
+    else if (asked.renamed.empty() && std::ranges::any_of(model.presets, is_own))
+        dialog_note({}, "The one that is kept under this name is replaced.");
+    else
+        dialog_note("It is kept for all scans, scaled to their intensities.", why);
     ImGui::BeginDisabled(!why.empty());
     const bool is_confirmed = ImGui::Button(asked.renamed.empty() ? "Keep" : "Rename") || (is_entered && why.empty());
     ImGui::EndDisabled();
     if (is_confirmed) {
         if (asked.renamed.empty())
-            actions.push_back(KeepPreset{asked.name});
+            actions.push_back(KeepPreset{name});
         else
-            actions.push_back(RenamePreset{asked.renamed, asked.name});
+            actions.push_back(RenamePreset{asked.renamed, name});
         ImGui::CloseCurrentPopup();
     }
     ImGui::SameLine();

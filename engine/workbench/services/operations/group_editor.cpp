@@ -128,13 +128,13 @@ void GroupEditor::begin(const GroupOperation& operation)
              "\" is still being computed; expected it to have ended: wait for it, or cancel it in the list of jobs");
     end_preview();
     others_.record_settings();
-    is_done_ = false;
-    applied_ = {.line = std::visit([](const auto& op) { return line_of(Action(op)); }, operation), .is_running = true};
     const uint64_t revision = annotator.revision(), opening = desk_.openings;
     running_ = compute(label_of(operation), operation, [this, operation, revision, opening](OperationResult result) {
         if (!document_ || desk_.openings != opening) fail(row_of(operation).title, ": the volume is no longer open");
         end(operation, revision, std::move(result));
     });
+    is_done_ = false;
+    applied_ = {.line = std::visit([](const auto& op) { return line_of(Action(op)); }, operation), .is_running = true};
 }
 
 std::string GroupEditor::in_words(const GroupOperation& operation, const OperationResult& result, bool is_preview) const
