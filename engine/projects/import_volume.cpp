@@ -443,10 +443,11 @@ ImportReport import_volume(const VolumeSource& source, const fs::path& origin, c
     try {
         return job.run();
     } catch (const ImportStopped&) {
-        const std::string stopped = options.tells_commands ? part + ": the import was stopped; " : "";
-        throw ImportStopped(stopped + "what is done is kept" + goes_on);
+        throw ImportStopped((options.tells_commands ? part + ": the import was stopped; what is done is kept"
+                                                    : "what is done is kept in " + part) +
+                            goes_on);
     } catch (const Error& error) {
-        fail(error.what(), "; what is done is kept", options.tells_commands ? " in " + part : "", goes_on);
+        fail(error.what(), "; what is done is kept in ", part, goes_on);
     }
 }
 

@@ -83,7 +83,7 @@ struct ImportOptions {
     /// gaps, and the project states them. An import with gaps is never resumed, since only the current run knows them.
     const Gaps* gaps = nullptr;
     /// Whether messages about unfinished work say how to go on with it by commands. Otherwise they say that it can be
-    /// resumed or deleted, without naming its folder, for callers that offer both.
+    /// resumed or deleted, for callers that offer both.
     bool tells_commands = true;
 };
 

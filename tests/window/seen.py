@@ -273,7 +273,7 @@ class Seen(Window):
                 "mouseup", 1, pause_s=0.2)
         self.press("Ctrl+A")
         if str(text):
-            self.do("type", "--delay", 40, text, pause_s=0)
+            self.do("type", "--delay", 40, "--", text, pause_s=0)
         else:
             self.press("BackSpace")
 

@@ -129,7 +129,7 @@ class Panels(Seen):
         self.open_scan(self.write_ball(), preferences={"hints_seen": 3})
         self.do("mousemove", *self.middle())
         self.type_in_palette("fill holes")
-        self.see("fills what a group encloses on all sides", "Operations on groups")
+        self.see("fills what a group encloses on all", "Operations on groups")
         self.assertIn({"op": "show_dialog", "dialog": "operation", "operation": "fill_holes"}, self.done())
         self.press("Escape")
         self.look_in_palette("ambient abc")

@@ -466,10 +466,11 @@ TEST_CASE("a caller that offers to resume and to delete gets messages without co
     const ImportOptions stopped{
         .threads = 1, .progress = [](const ImportProgress&) { throw Stopped("cancelled"); }, .tells_commands = false};
     CHECK(error_of([&] { folder.import(source, "project", stopped); }) ==
-          "what is done is kept, and can be resumed or deleted");
+          "what is done is kept in " + (folder.path / "project.part").string() + ", and can be resumed or deleted");
     const Interrupted broken(source, 1, true);
     CHECK(error_of([&] { folder.import(broken, "other", {.threads = 1, .tells_commands = false}); }) ==
-          "source: cannot be read: Input/output error; what is done is kept, and can be resumed or deleted");
+          "source: cannot be read: Input/output error; what is done is kept in " +
+              (folder.path / "other.part").string() + ", and can be resumed or deleted");
 }
 
 TEST_CASE("an import that is asked to stop begins nothing more, wherever it is")

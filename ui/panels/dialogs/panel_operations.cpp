@@ -251,7 +251,10 @@ void operations_window(const Model& model, Actions& actions)
         hint("Shows in the picture which voxels would change, and counts them, whenever a value is changed");
         follow_preview(model, line, why.empty(), actions);
         draw_outline(model);
+        // Room for two lines, so that the buttons stay where they are when other words come.
+        const float below = ImGui::GetCursorPosY() + 2.0f * ImGui::GetTextLineHeightWithSpacing();
         draw_note(model, line, why);
+        ImGui::SetCursorPosY(std::max(ImGui::GetCursorPosY(), below));
         const ImVec2 button{6.0f * ImGui::GetFontSize(), 0.0f};
         ImGui::BeginDisabled(!why.empty());
         if (ImGui::Button("Apply", button) || (why.empty() && wish == OutlineTool::Wish::apply))
