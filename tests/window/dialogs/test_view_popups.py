@@ -100,14 +100,17 @@ class Popups(Seen):
             self.press(last)
             self.see_no_more("", POPUP)
             self.see("3  root", "Side panel")
+        self.click_on("3  root", "Side panel", button=3)
+        self.check_follows(lambda: self.click_on("Default name", POPUP), wanted)
+        self.see("3  group 3", "Side panel")
         self.finish()
-        self.assertEqual(self.names(), ["vein 1", "leaf", "stalk"])
+        self.assertEqual(self.names(), ["vein 1", "leaf", "stalk", ""])
 
     def test_names_with_signs_are_shown_in_full(self):
         # Dear ImGui would end the labels of its widgets before "##".
-        session = self.write_ball(groups={"3": {"name": "vein##x###y"}}, cameras={"top##1": {"side": "top"}})
+        session = self.write_ball(groups={"3": {"name": "v##x###y"}}, cameras={"top##1": {"side": "top"}})
         session = session.rename(self.folder / "ball##1.json")
-        name = "3  vein##x###y"
+        name = "3  v##x###y"
         self.open_scan(session, preferences={**only_panel("groups"), "recent": [{"path": str(session)}]})
         self.see(name, "Side panel")
         self.click_on(name, "Tools")
