@@ -94,7 +94,7 @@ class Compared(CliTest):
         self.check_refused("bench", "--compare", a, self.write_json("d.json", {"shvr_bench": 1}),
                            says=["is not what shvr bench writes"])
         self.check_refused("bench", status=2, says=["--output is missing"])
-        self.check_refused("bench", "--scenes", "fog", "-o", "/proc/none", says=["/proc/none: cannot be created"])
+        self.check_refused("bench", "--scenes", "fog", "-o", "/proc/none", says=["/proc/none: cannot be written"])
 
 
 if __name__ == "__main__":

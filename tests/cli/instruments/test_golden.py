@@ -214,7 +214,7 @@ class Golden(CliTest):
                      (self.folder / "golden-results/junit.xml").read_text()):
             self.assertNotIn("shvr golden bless", said)
         self.golden("run", "-o", "/proc/none", status=1)
-        self.assertIn("/proc/none: cannot be created", self.errors)
+        self.assertIn("/proc/none: cannot be written", self.errors)
 
     def test_calibration_tells_how_far_the_driver_moves_a_picture(self):
         result = self.golden("calibrate", "spheres", "--table", "calibration.md", status=0)
