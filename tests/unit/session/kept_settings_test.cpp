@@ -145,11 +145,11 @@ TEST_CASE("kept settings that cannot be read are refused by key, and nothing is 
 TEST_CASE("sections that are set for this time only are not kept")
 {
     const SettingValues values = kept_settings(parse());
-    CHECK(values.size() == 5);
+    CHECK(values.size() == 6);
     for (const char* setting : {"camera=top", "cameras.a.side=left"})
         CHECK_FALSE(without_overridden(values, {setting}).contains("cameras"));
     const SettingValues rest = without_overridden(values, {"render.size=[1,2]", "probe={}"});
-    CHECK(rest.size() == 3);
+    CHECK(rest.size() == 4);
     CHECK_FALSE(rest.contains("probe"));
     const SettingValues lasting = lasting_settings(parse());
     REQUIRE(lasting.contains("picture"));
