@@ -408,12 +408,16 @@ private:
             text = std::to_string(std::lround(100.0 * *model_.reading.relevant_share)) + " % full, " + text;
             meter(at->pixel, reach + 4.0 * units_, *model_.reading.relevant_share);
         }
-        // Puts the text to the left if the right side lacks room. CHARACTER: upper bound of a character's width.
+        // At the right; at the left if there is room only there; else as far right as it is whole. CHARACTER: upper
+        // bound of a character's width.
         constexpr double CHARACTER = 8.0;
-        const double beside = 0.75 * reach + 6.0 * units_;
-        const bool has_room =
-            at->pixel.x + beside + CHARACTER * units_ * double(text.size()) < double(pixels_.x) || at->pixel.x < beside;
-        label(at->pixel + glm::dvec2(has_room ? beside : -beside, beside), {has_room ? 0.0 : 1.0, 0.0}, text);
+        const double beside = 0.75 * reach + 6.0 * units_, width = CHARACTER * units_ * double(text.size());
+        const glm::dvec2 right = at->pixel + beside;
+        const double last = double(pixels_.x) - width;
+        if (right.x > last && at->pixel.x - beside >= width)
+            label({at->pixel.x - beside, right.y}, {1.0, 0.0}, text);
+        else
+            label({std::max(std::min(right.x, last), 0.0), right.y}, {0.0, 0.0}, text);
     }
     /// Draws an arc around the probe, clockwise from the top; its angle shows the relevant share of the probe's ball.
     void meter(const glm::dvec2& middle, double radius, double share)
