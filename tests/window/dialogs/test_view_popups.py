@@ -104,7 +104,7 @@ class Popups(Seen):
         self.check_follows(lambda: self.click_on("Default name", POPUP), wanted)
         self.see("3  group 3", "Side panel")
         self.finish()
-        self.assertEqual(self.names(), ["vein 1", "leaf", "stalk", ""])
+        self.assertEqual(self.names(), ["vein 1", "leaf", "stalk", None])
 
     def test_names_with_signs_are_shown_in_full(self):
         # Dear ImGui would end the labels of its widgets before "##".
