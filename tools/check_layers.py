@@ -121,8 +121,8 @@ MAY_INCLUDE = {
     "ui/panels": "ui/thumbnails ui/panels/signs ui/panels/tools engine/base engine/session engine/session/words engine/workbench/appearance engine/workbench/curves engine/workbench/models "
     "engine/workbench/actions engine/workbench/lists engine/workbench/sight engine/workbench/edits "
     "engine/workbench/bindings",
-    "ui/panels/look": "engine/session engine/workbench/curves engine/workbench/models engine/workbench/actions "
-    "engine/workbench/edits engine/workbench/bindings ui/panels",
+    "ui/panels/look": "engine/base engine/session engine/workbench/curves engine/workbench/models "
+    "engine/workbench/actions engine/workbench/edits engine/workbench/bindings ui/panels ui/panels/dialogs",
     "ui/panels/start": "engine/base engine/remote engine/workbench/models engine/workbench/bindings ui/files ui/thumbnails ui/panels",
     "ui/panels/banners": "engine/base engine/workbench/models engine/workbench/actions engine/workbench/forms ui/panels",
     "ui/panels/dialogs": "engine/base engine/session engine/session/words engine/workbench/models engine/workbench/actions "
