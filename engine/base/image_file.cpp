@@ -123,7 +123,6 @@ public:
     {
         std::vector<png_text> chunks;
         for (const auto& [keyword, text] : texts) {
-            if (keyword == PICTURE_DPI) continue;
             if (text.size() > MAX_PICTURE_TEXT)
                 fail(name_, ": its text '", keyword, "' has ", text.size(), " bytes; expected at most ",
                      MAX_PICTURE_TEXT);

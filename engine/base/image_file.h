@@ -30,8 +30,8 @@ Image8 read_png(const std::filesystem::path& path);
 /// written compressed (iTXt), before the pixels. Each text has at most MAX_PICTURE_TEXT bytes.
 using PictureTexts = std::vector<std::pair<std::string, std::string>>;
 inline constexpr size_t MAX_PICTURE_TEXT = size_t{16} << 20;
-/// Keyword of the text that states the resolution in dots per inch, as a number. It is written as a pHYs chunk or as
-/// the tags of a TIFF instead of as a text.
+/// Keyword of the text that states the resolution in dots per inch, as a number. It is also written as a pHYs chunk or
+/// as the tags of a TIFF, which other programs read.
 inline constexpr const char* PICTURE_DPI = "SHVR dots per inch";
 /// Null if the texts do not state it.
 std::optional<double> dots_per_inch_of(const PictureTexts& texts);

@@ -199,8 +199,7 @@ private:
     {
         std::string description;
         for (const auto& [keyword, text] : texts_)
-            if (keyword != PICTURE_DPI)
-                description += (description.empty() ? "" : std::string(1, '\0')) + keyword + '\n' + text;
+            description += (description.empty() ? "" : std::string(1, '\0')) + keyword + '\n' + text;
         const std::optional<double> dpi = dots_per_inch_of(texts_);
         const size_t entries = 12 + size_t(!description.empty()) + (dpi ? 3 : 0) + size_t(has_alpha_);
         Directory to(at, entries);

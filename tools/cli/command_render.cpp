@@ -145,7 +145,7 @@ void run_render(RenderCommandOptions options)
     if (options.output.empty() == options.movie.path.empty())
         throw UsageError(options.output.empty() ? "--output is missing; expected -o for a picture, or --movie"
                                                 : "--output and --movie are given; expected one of them");
-    check_figure(options.figure, options.input);
+    check_figure(options.figure, options.input, !options.size.empty());
     if (!options.movie.path.empty() && !options.task.empty())
         throw UsageError("--task and --movie are given; expected one of them, since a movie is not split");
     if (!options.movie.path.empty()) {

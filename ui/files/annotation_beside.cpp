@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <string_view>
 
 #include "engine/base/text.h"
@@ -28,13 +29,24 @@ bool looks_like_annotation(const std::string& name)
            (std::ranges::any_of(IMAGES, ends) && std::ranges::any_of(WORDS, holds));
 }
 
+/// "leaf-mask.nrrd" and "leaf.session.labels.zarr" begin with "leaf"; "leaflet-mask.nrrd" does not.
+bool begins_with_any(const std::string& name, const std::vector<std::string>& stems)
+{
+    return std::ranges::any_of(stems, [&](const std::string& stem) {
+        return !stem.empty() && name.starts_with(stem) && name.size() > stem.size() &&
+               !std::isalnum(static_cast<unsigned char>(name[stem.size()]));
+    });
+}
+
 }  // namespace
 
-std::vector<FoundFile> annotation_beside(const fs::path& folder, const std::vector<fs::path>& own)
+std::vector<FoundFile> annotation_beside(const fs::path& folder, const std::vector<fs::path>& own,
+                                         const std::vector<std::string>& stems)
 {
     constexpr size_t MAX_EXAMINED = 10000;
     struct Dated {
         FoundFile file;
+        bool is_of_scan;
         fs::file_time_type changed;
     };
     std::vector<Dated> found;
@@ -48,10 +60,12 @@ std::vector<FoundFile> annotation_beside(const fs::path& folder, const std::vect
         const bool is_file = at->is_regular_file(unknown);
         if (what_is_at(at->path()) != There::file) continue;
         const uintmax_t bytes = is_file ? at->file_size(unknown) : 0;
-        found.push_back(
-            {{at->path(), name, is_file && !unknown ? size_text(int64_t(bytes)) : ""}, at->last_write_time(unknown)});
+        found.push_back({{at->path(), name, is_file && !unknown ? size_text(int64_t(bytes)) : ""},
+                         begins_with_any(name, stems),
+                         at->last_write_time(unknown)});
     }
     std::ranges::sort(found, [](const Dated& a, const Dated& b) {
+        if (a.is_of_scan != b.is_of_scan) return a.is_of_scan;
         return a.changed != b.changed ? a.changed > b.changed : a.file.name < b.file.name;
     });
     std::vector<FoundFile> files;

@@ -138,7 +138,7 @@ inline constexpr auto PICTURE_ACTIONS = std::tuple{
             if (is_drawing_picture(model)) return IS_DRAWING_PICTURE;
             const bool goes = task.views.find('\n') != std::string::npos;
             if (!goes && task.turntable_degrees == 0.0)
-                return "a movie of one view that does not rotate stands still; expected degrees, or at least two views";
+                return "one view that does not turn stands still: add a second view, or let the volume turn";
             return why_not_through(model, task.views);
         })};
 

@@ -18,6 +18,9 @@ ImportForm suggested_import(const Model& model, const std::filesystem::path& vol
     else if (model.is_open)
         form.volume = model.session.volume_path.string();
     follow_volume(form);
+    const bool is_given = model.volume.spacing_from == Provenance::given || model.volume.unit_from == Provenance::given;
+    if (model.is_open && form.volume == model.session.volume_path.string() && is_given)
+        form.voxel_size = form.suggested_size = text_of(VoxelSize{model.volume.spacing, model.volume.unit});
     return form;
 }
 
@@ -30,6 +33,8 @@ std::filesystem::path project_for(const std::filesystem::path& volume)
 
 void follow_volume(ImportForm& form)
 {
+    if (form.voxel_size == form.suggested_size) form.voxel_size.clear();
+    form.suggested_size.clear();
     if (form.project != form.suggested) return;
     form.project = form.suggested = project_for(form.volume).string();
 }

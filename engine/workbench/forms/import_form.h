@@ -14,12 +14,14 @@ struct ImportForm {
     std::string volume, project;                    ///< as typed
     std::string suggested;                          ///< the project that was suggested; one that was typed is kept
     std::string voxel_size;                         ///< as typed (voxel_size.h); empty: the file's
+    std::string suggested_size;                     ///< the size that a person gave the open scan; empty: none
     ImportTask more{.names = OptionNames::titles};  ///< all other options; those of the rows too
 };
 
-/// Returns a form for that scan, or for the open scan if the path is empty.
+/// Returns a form for that scan, or for the open scan if the path is empty. Spacing and unit that a person gave the open
+/// scan, and that its file does not have, are among the form's values.
 ImportForm suggested_import(const Model& model, const std::filesystem::path& volume);
-/// Suggests a project for the typed scan, unless a project was typed.
+/// Suggests a project for the typed scan, unless a project was typed. The size suggested for another scan is dropped.
 void follow_volume(ImportForm& form);
 /// Returns the folder that is suggested for a project: "/scans/leaf-project" for "/scans/leaf.tif".
 std::filesystem::path project_for(const std::filesystem::path& volume);

@@ -167,12 +167,13 @@ glm::uvec2 Photographer::pixels_of(const glm::ivec2& asked) const
     return asked.x > 0 && asked.y > 0 ? glm::uvec2(asked) : others_.pixels();
 }
 
-/// Returns what figures and movies show: all but the probe.
+/// Returns what figures and movies show: all but the probe and the edges of the clip box.
 Session Photographer::session_of_pictures(const glm::uvec2& pixels) const
 {
     Session session = document_->saved_session();
     session.render.size = pixels;
     session.render.background.a = 1.0;
+    session.view.cut_box = false;  // belongs to a tool, as the outline of the cutting plane does
     return session;
 }
 

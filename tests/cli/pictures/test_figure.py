@@ -201,16 +201,23 @@ class Figure(CliTest):
                               (["--text-pixels", "12"], "without anything to draw; expected")]:
             self.check_refused("render", self.session, "-o", self.folder / "a.png", *options, says=[says], status=2)
 
+    def dots(self, name):
+        """Per metre along both axes, as a PNG file states."""
+        content = (self.folder / name).read_bytes()
+        chunk = content.find(b"pHYs")
+        if chunk < 0:
+            return None
+        x, y, is_metre = struct.unpack(">IIB", content[chunk + 4:chunk + 13])
+        self.assertEqual((x, is_metre), (y, 1))
+        return x
+
     def test_a_size_on_paper_is_kept_in_the_file(self):
         for name, size, expected, dots in [("a.png", "25.4x12.7mm", (300, 150), 11811), ("b.png", "25.4x12.7mm", (100, 50), 3937),
                                            ("c.png", "40x30", (40, 30), 3937), ("d.png", "40x30", (40, 30), None)]:
             dpi = ["--dpi", "100"] if dots == 3937 else []
             result = self.check_json("render", self.session, "-o", self.folder / name, "--size", size, *dpi)
             self.assertEqual(tuple(result["size"]), expected)
-            content = (self.folder / name).read_bytes()
-            chunk = content.find(b"pHYs")
-            found = struct.unpack(">IIB", content[chunk + 4:chunk + 13]) if chunk >= 0 else None
-            self.assertEqual(found, None if dots is None else (dots, dots, 1))
+            self.assertEqual(self.dots(name), dots)
         for options, says in [(["--size", "0x10mm"], "expected WIDTHxHEIGHTmm"), (["--size", "85mm"], "--size is"),
                               (["--size", "9000x10mm"], "1 to 65536 pixels"), (["--dpi", "1"], "--dpi is 1; expected"),
                               (["--size", "85x60mm", "--dpi", "0"], "--dpi is 0; expected")]:
@@ -220,9 +227,14 @@ class Figure(CliTest):
         tiff, again, direct = (self.folder / name for name in ("a.tif", "again.png", "direct.png"))
         session = self.write_session(render={"size": [40, 30]})
         self.check("render", session, "-o", tiff, "--camera", "left", "--with-session", "--dpi", "300")
-        self.check("render", tiff, "-o", again)
+        self.check("render", tiff, "-o", again, "--with-session")
         self.check("render", session, "-o", direct, "--camera", "left")
         self.check("compare", again, direct, "--max-abs", "0")
+        self.assertEqual((self.dots("again.png"), self.dots("direct.png")), (11811, None))
+        self.check("render", again, "-o", direct)
+        self.assertEqual(self.dots("direct.png"), 11811)
+        self.check("render", again, "-o", direct, "--size", "20x15")
+        self.assertEqual(self.dots("direct.png"), None)
 
     def test_a_picture_that_is_rendered_again_has_its_elements(self):
         elements = ["--scale-bar", "--color-bar", "--axes", "--title", "Bellis\nperennis", "--text", "6,12,18:stem",

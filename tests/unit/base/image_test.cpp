@@ -384,7 +384,7 @@ TEST_CASE("a TIFF has the pixels of the PNG, its texts and its resolution")
         writer->commit();
         CHECK(read_tiff_text(path, "SHVR session") == texts[0].second);
         CHECK(read_tiff_text(path, "SHVR project") == "b");
-        CHECK(read_tiff_text(path, PICTURE_DPI) == std::nullopt);
+        CHECK(read_tiff_text(path, PICTURE_DPI) == "300");
         TIFF* const tiff = TIFFOpen(path.c_str(), "r");
         REQUIRE(tiff);
         const Image8 expected = to_image8(image);

@@ -30,6 +30,9 @@ TEST_CASE("annotation beside a scan is found by its names, the newest first, wit
     CHECK(names == std::vector<std::string>{"leaf-mask.nrrd", "traced.swc", "Labels.tif", "tubes-mask.nhdr",
                                             "brain_label.nii", "a-labels.mha"});
     CHECK(annotation_beside(folder.path / "gone", {}).empty());
+    // Those of the open scan come first, whatever their age.
+    CHECK(annotation_beside(folder.path, {}, {"", "tubes"}).front().name == "tubes-mask.nhdr");
+    CHECK(annotation_beside(folder.path, {}, {"tube", "brain"}).front().name == "brain_label.nii");
 }
 
 TEST_CASE("what is at a path is a file, a folder that holds an image, another folder, or nothing")

@@ -91,8 +91,11 @@ void add_figure_texts(PictureTexts& texts, const FigureOptions& options)
     if (options.dots_per_inch) texts.emplace_back(PICTURE_DPI, digits_of(*options.dots_per_inch));
 }
 
-void check_figure(FigureOptions& options, const std::filesystem::path& input)
+void check_figure(FigureOptions& options, const std::filesystem::path& input, bool has_size)
 {
+    if (!options.dots_per_inch && !has_size)
+        if (const std::optional<std::string> kept = text_in_picture(input, PICTURE_DPI))
+            options.dots_per_inch = number_of(*kept);
     const double dpi = options.dots_per_inch.value_or(PRINT_DPI);
     if (!(dpi >= MIN_PRINT_DPI && dpi <= MAX_PRINT_DPI))
         throw UsageError(sentence("--dpi is ", dpi, "; expected a number from ", MIN_PRINT_DPI, " to ", MAX_PRINT_DPI));

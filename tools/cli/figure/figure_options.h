@@ -26,8 +26,8 @@ glm::uvec2 take_picture_size(const std::string& text, FigureOptions& options);
 /// Adds the elements to the texts of a picture if it keeps its session, and the resolution, if there is one.
 void add_figure_texts(PictureTexts& texts, const FigureOptions& options);
 /// Reads the texts into the elements. Throws UsageError for a text that is not as expected. Without elements, takes
-/// those that `input` keeps, if it is a picture.
-void check_figure(FigureOptions& options, const std::filesystem::path& input);
+/// those that `input` keeps, if it is a picture; likewise the resolution, unless another size is asked for.
+void check_figure(FigureOptions& options, const std::filesystem::path& input, bool has_size);
 
 /// Returns what draws the elements over rows of the picture of `session` from `camera`; empty if there are none. Adds
 /// to `left_out` what it cannot draw, each sentence once. `memory`: as in ui::FigureScene.

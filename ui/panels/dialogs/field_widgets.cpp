@@ -26,7 +26,8 @@ FileChooser chooser({.title = "Choose a file or a folder",
                      .note = "A new name can be typed, too.",
                      .wanted = FileChooser::Wanted::any});
 ImGuiID chooser_of = 0;
-FieldKeys first_keys;  ///< gives the keyboard to the first path of a dialog that has just opened
+FieldKeys first_keys;     ///< gives the keyboard to the first path of a dialog that has just opened
+ImGuiID first_field = 0;  ///< that path; others leave `first_keys` alone
 
 /// In font sizes. A value with less room than MIN_BESIDE is below its name.
 constexpr float NAME_COLUMN = 9.0f, VALUE_WIDTH = 26.0f, MIN_BESIDE = 12.5f;
@@ -145,10 +146,12 @@ public:
         ImGui::PushID(std::string(name).c_str());
         begin_row(name);
         const float width = width_of_value(VALUE_WIDTH);
-        const bool is_first = std::exchange(is_before_paths_, false);
-        if (is_first) first_keys.before_field(begins_);
+        const ImGuiID id = ImGui::GetID("##path");
+        const bool begins = std::exchange(is_before_paths_, false) && begins_;
+        if (begins) first_field = id;
+        if (first_field == id) first_keys.before_field(begins);
         bool is_changed = path_field(shown, words_for(about, width), width, tooltip_of(about));
-        if (is_first) first_keys.after_field();
+        if (first_field == id) first_keys.after_field();
         is_changed |= path_button(shown, new_file(name, about));
         if (is_changed) value = shown;
         ImGui::PopID();
@@ -277,15 +280,14 @@ bool path_row(const char* name, std::string& path, const char* meaning, const st
 {
     ImGui::PushID(name);
     begin_row(name);
-    static ImGuiID began = 0;
     const ImGuiID id = ImGui::GetID("##path");
     if (begins) {
-        began = id;
+        first_field = id;
         if (ImGui::GetActiveID() == id) ImGui::ClearActiveID();  // it would keep what it shows, not take `path`
     }
-    if (began == id) first_keys.before_field(begins);
+    if (first_field == id) first_keys.before_field(begins);
     bool is_changed = path_field(path, meaning, width_of_value(VALUE_WIDTH), meaning);
-    if (began == id) first_keys.after_field();
+    if (first_field == id) first_keys.after_field();
     is_changed |= path_button(path, begin);
     ImGui::PopID();
     return is_changed;

@@ -36,6 +36,7 @@ struct AnnotationDialog {
     std::string path;  ///< as typed
     FileUse use = FileUse::by_contents;
     bool is_shown = false, is_being_read = false;
+    bool is_refused = false;    ///< Enter was pressed while nothing can be loaded: the field gets the keyboard again
     bool is_suggested = false;  ///< the path was just taken from `found`, and its field is to show it
     std::string asked_path;     ///< the typed path that is asked about, or was
     Asked<There> looking_at;    ///< what is at `asked_path`
@@ -104,15 +105,18 @@ bool follow_drops(const Model& model)
     return true;
 }
 
-/// Begins with the file that was dropped, or else with the newest annotation in the folder of the scan.
+/// Begins with the file that was dropped, or else with the newest annotation of the scan in its folder.
 void begin(const Model& model)
 {
     asking = {.is_shown = true};
     if (follow_drops(model)) return;
     const std::vector<std::filesystem::path> own{model.session.mask_path, model.session.trace_path,
                                                  model.session.density_path, model.session.volume_path};
+    const std::filesystem::path base = base_of(model);
+    const std::vector<std::string> stems{base.filename().string(),
+                                         stem_of(model.session.volume_path).filename().string()};
     asking.looking = Asked<std::vector<FoundFile>>(
-        [folder = base_of(model).parent_path(), own] { return annotation_beside(folder, own); });
+        [folder = base.parent_path(), own, stems] { return annotation_beside(folder, own, stems); });
 }
 
 /// Takes what the disk has answered, and asks about what was typed since.
@@ -134,12 +138,17 @@ void follow_disk(const Model& model)
     if (const auto there = asking.looking_at.take()) asking.there = *there;
 }
 
+bool names_scan(const Model& model)
+{
+    return placed(asking.path, base_of(model).parent_path()) == model.session.volume_path;
+}
+
 /// Asks for a preview of what is typed, once it names a file.
 void follow_preview(const Model& model, Actions& actions)
 {
     const std::filesystem::path path = placed(asking.path, base_of(model).parent_path());
     const bool is_known = asking.previewed == path && asking.previewed_use == asking.use;
-    const bool is_there = asking.there == There::file;
+    const bool is_there = asking.there == There::file && !names_scan(model);
     if (is_known || (!is_there && asking.previewed.empty())) return;
     asking.previewed = is_there ? path : std::filesystem::path();
     asking.previewed_use = asking.use;
@@ -179,7 +188,10 @@ void what_changes(const Model& model)
 {
     const bool is_asked = !asking.previewed.empty();
     if (asking.there == There::nothing && !asking.path.empty())
-        return dialog_note("", asking.path + ": there is no such file");
+        return dialog_note(
+            "", trimmed(asking.path).empty() ? "Type the name of a file." : asking.path + ": there is no such file");
+    if (names_scan(model))
+        return dialog_note("", asking.path + ": is the scan that is open; expected annotation of it");
     if (!is_asked || !model.load_preview || model.load_preview->path != asking.previewed) {
         dialog_note(is_asked ? "is being read ..." : "A mask, density offsets, a trace, a transfer function or a mesh.",
                     "");
@@ -216,7 +228,8 @@ void load_preview_dialog(const Model& model, Actions& actions)
         return;
     }
     const bool has_chooser = path_chooser_is_open();
-    const bool is_filled = follow_drops(model) || std::exchange(asking.is_suggested, false);
+    const bool is_filled = follow_drops(model) || std::exchange(asking.is_suggested, false) ||
+                           std::exchange(asking.is_refused, false);  // a field lets go of the keyboard at Enter
     path_row("File", asking.path, "mask, offsets, trace, transfer function or mesh", base_of(model).parent_path() / "",
              is_filled || begins);
     use_row();
@@ -227,15 +240,18 @@ void load_preview_dialog(const Model& model, Actions& actions)
     const LoadPreview* const preview = model.load_preview;
     asking.is_being_read = preview && preview->is_being_read;
     const bool can_load = preview && !preview->is_being_read && preview->failure.empty() && preview->changes_anything &&
-                          preview->path == asking.previewed && asking.path == asking.asked_path;
+                          preview->path == asking.previewed && asking.path == asking.asked_path && !names_scan(model);
     const ImVec2 button{6.0f * ImGui::GetFontSize(), 0.0f};
     ImGui::BeginDisabled(!can_load);
-    const bool loads = ImGui::Button("Load", button) || (can_load && !has_chooser && enter_confirms());
+    const bool is_entered = !has_chooser && enter_confirms();
+    asking.is_refused = is_entered && !can_load;
+    const bool loads = ImGui::Button("Load", button) || (can_load && is_entered);
     ImGui::EndDisabled();
     ImGui::SameLine();
     const bool leaves = ImGui::Button("Cancel", button) || !is_wanted ||
                         (!has_chooser && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)));
     if (loads) actions.push_back(LoadAnnotation{preview->path, use_of(*preview)});
+    keep_above(ImGui::GetMainViewport()->WorkPos.y + ImGui::GetMainViewport()->WorkSize.y);
     if (!loads && leaves && is_wanted) actions.push_back(PreviewLoad{});
     if (loads || leaves) {
         if (model.dialog == Dialog::load) actions.push_back(ShowDialog{});

@@ -1,6 +1,7 @@
 // Cutting planes of the volume and clip planes of the camera, edited as numbers.
 
 #include <algorithm>
+#include <cmath>
 
 #include <imgui/imgui.h>
 
@@ -109,6 +110,7 @@ void oblique_numbers(const Model& model, Actions& actions)
     if (is_other && glm::length(normal) > 1e-3) cut.plane_normal = glm::normalize(normal);
     const double reach = 0.5 * glm::length(glm::dvec3(model.volume.size) * spacing);
     double offset = glm::dot((point - middle) * spacing, glm::normalize(*cut.plane_normal));
+    if (std::abs(offset) < 1e-9 * reach) offset = 0.0;  // a rounding error
     const std::string format = std::string("%.5g ") + spelled(model.volume.unit);
     row("Offset");
     if (drag_number("##offset", offset, reach / 300.0, -reach, reach, format.c_str())) {

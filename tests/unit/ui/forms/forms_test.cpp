@@ -193,6 +193,26 @@ TEST_CASE("an import suggests a project beside the scan, until one is typed")
     CHECK(suggested_import(world.model, "/a/b.nrrd").volume == "/a/b.nrrd");
 }
 
+TEST_CASE("an import has the spacing that a person gave the open scan, and that its file lacks")
+{
+    Scanned world;
+    world.volume.spacing = {3.0, 3.0, 4.5};
+    CHECK(suggested_import(world.model, {}).voxel_size.empty());  // the file states it
+    world.volume.spacing_from = Provenance::given;
+    ImportForm form = suggested_import(world.model, {});
+    const ImportTask task = task_of(form, "/scans");
+    CHECK(task.choice.spacing == glm::dvec3(3.0, 3.0, 4.5));
+    CHECK(task.choice.unit == "um");
+    CHECK(suggested_import(world.model, "/a/b.nrrd").voxel_size.empty());
+    form.volume = "/a/b.nrrd";
+    follow_volume(form);
+    CHECK(form.voxel_size.empty());
+    form.voxel_size = "2 um";
+    form.volume = "/a/c.nrrd";
+    follow_volume(form);
+    CHECK(form.voxel_size == "2 um");  // typed
+}
+
 TEST_CASE("what an import would make is told from the scan's header, with a free name where one is taken")
 {
     const TemporaryFolder folder;
