@@ -29,6 +29,11 @@ bool paints(Tool tool)
     return tool == Tool::paint || tool == Tool::erase;
 }
 
+bool has_slices(const Model& model)
+{
+    return std::ranges::any_of(model.panes, [](const auto& shown) { return shown.pane.kind == Pane::Kind::slice; });
+}
+
 /// Slices' contrast, dragged.
 void drag_contrast(const glm::dvec2& heights, const Model& model, Actions& actions)
 {
@@ -220,7 +225,10 @@ void Viewport::click(const Model& model, Actions& actions)
     last_click_ = pressed_;
     switch (model.tool()) {
         case Tool::turn:
-            if (!is_second_) click_ = Click{{pane_, pixel, false}, pressed_s_};
+            if (is_second_) break;
+            click_ = Click{{pane_, pixel, false}, pressed_s_};
+            if (has_slices(model) && model.preferences.key_set != KeySet::thesis)
+                actions.emplace_back(ProbeOnto{pane_, pixel});  // the slices follow
             break;
         case Tool::trace:
             if (pressed_node_)

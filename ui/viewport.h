@@ -4,7 +4,8 @@
 //
 // The session's tool (engine/session/session.h) determines the effect of the left button:
 //
-//   turn      a drag turns, a click selects what is under the pointer, a double click puts the probe there
+//   turn      a drag turns, a click selects what is under the pointer, a double click puts the probe there; next
+//             to slices, which follow the probe, a click does that, too (not with the keys of the thesis)
 //   paint     paints, while the button is held, at the visible point under the pointer; erase likewise
 //   trace     a click on a node selects it, a drag moves it; a click elsewhere adds a node; any other drag turns
 //   select    a click selects, a double click the whole segment; a drag turns

@@ -93,6 +93,21 @@ class Export(Seen):
         faces = int(surface.read_bytes().split(b"element face ")[1].split()[0])
         self.assertGreater(faces, 500)
 
+    def test_text_goes_into_the_name_even_with_more_unfolded(self):
+        self.open_scan(self.write_ball(), preferences={"hints_seen": 3})
+        self.press("Ctrl+E")
+        self.see("Writes 1 file to ", WINDOW)
+        self.click_on("More", WINDOW)
+        self.see("Density offsets", WINDOW)
+        self.press("Escape")
+        self.see_no_more("Cancel", WINDOW)
+        self.press("Ctrl+E")
+        self.see("Density offsets", WINDOW)
+        self.do("key", "ctrl+a", "type", "--delay", 40, "hello", pause_s=0)
+        self.see("hello-mask.nrrd, 262 kB", WINDOW)
+        self.press("Escape")
+        self.finish()
+
     def test_a_mistake_is_told_in_the_dialog_and_the_dialog_stays(self):
         self.open_scan(self.write_ball(), preferences={"hints_seen": 3})
         self.press("Ctrl+E")

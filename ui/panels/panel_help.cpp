@@ -40,7 +40,7 @@ constexpr Gesture GESTURES[] = {
     {"Shift while dragging a setting", "A tenth as far, for fine steps; so with the wheel over the curve"},
     {"Double click on the panels' edge", "Restore their default width"},
     {"Drop files", "Open them: scans, sessions, projects, masks, traces, transfer functions"},
-    {"Click, with the tool that turns", "Select the node, or take the group, under the pointer"},
+    {"Click, with the tool that turns", "Select the node, or take the group, under the pointer; slices go there"},
     {"Click or drag in a slice", "Set the cross-hairs, and with them the other slices (tool that turns)"},
     {"Shift + move", "Slices follow the pointer; without Shift they stay where they are"},
     {"Ctrl + drag in a slice", "Contrast: sideways how much, up and down how bright"},

@@ -18,8 +18,8 @@ struct ImportForm {
     ImportTask more{.names = OptionNames::titles};  ///< all other options; those of the rows too
 };
 
-/// Returns a form for that scan, or for the open scan if the path is empty. Spacing and unit that a person gave the open
-/// scan, and that its file does not have, are among the form's values.
+/// Returns a form for that scan, or for the open scan if the path is empty. Spacing and unit that a person gave the
+/// open scan, and that its file does not have, are among the form's values.
 ImportForm suggested_import(const Model& model, const std::filesystem::path& volume);
 /// Suggests a project for the typed scan, unless a project was typed. The size suggested for another scan is dropped.
 void follow_volume(ImportForm& form);

@@ -171,6 +171,18 @@ TEST_CASE("A click of the turn tool selects once it is no double click, which pu
     CHECK(mouse.said == "");
 }
 
+TEST_CASE("Slices follow a click of the turn tool in the volume at once, but not with the keys of the thesis")
+{
+    Mouse mouse(Tool::turn, true);
+    mouse.click(40.0, 40.0);
+    CHECK(mouse.said == "probe_onto");
+    CHECK(mouse.wait(1.0) == "select_at");
+    Mouse thesis(Tool::turn, true);
+    thesis.world.preferences.key_set = KeySet::thesis;
+    thesis.click(40.0, 40.0);
+    CHECK(thesis.said == "");
+}
+
 TEST_CASE("Clicks trace, select and measure; a press that moves is none")
 {
     Mouse trace(Tool::trace);
