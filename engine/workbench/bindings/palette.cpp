@@ -153,11 +153,30 @@ void add_typed(std::vector<PaletteEntry>& entries, const Model& model, std::stri
             typed(model, lower_case(text.substr(0, equals)) + std::string(text.substr(equals)), "Setting", set_of));
 }
 
+/// Returns words for what a dialog is about, which its name lacks; none for most.
+std::string_view further_words(std::string_view id)
+{
+    constexpr std::pair<std::string_view, std::string_view> WORDS[]{
+        {"load_annotation", "mask labels trace density offsets transfer function mesh look"},
+        {"export_work", "mask labels trace measures measurements distances csv table surface mesh annotation"},
+        {"import_scan", "volume crop downscale"},
+        {"correct_spacing", "unit voxel size micrometre"},
+        {"open_with_options", "budget memory level raw spacing"},
+        {"figure", "picture image publication clipboard png tiff"},
+        {"movie", "video animation turntable webm mp4 frames"},
+        {"screenshot", "picture image png"},
+        {"compare", "evaluate dice error"}};
+    const auto found = std::ranges::find(WORDS, id, &std::pair<std::string_view, std::string_view>::first);
+    return found == std::end(WORDS) ? std::string_view() : found->second;
+}
+
 void add_shortcuts(std::vector<PaletteEntry>& entries, const Model& model, std::string_view text)
 {
     for (const Shortcut& shortcut : shortcuts()) {
         const std::string keys = model.keymap.text_of(shortcut);
-        if (!has_words(sentence(shortcut.name, ' ', shortcut.group, ' ', shortcut.id, ' ', keys), text)) continue;
+        const std::string words =
+            sentence(shortcut.name, ' ', shortcut.group, ' ', shortcut.id, ' ', keys, ' ', further_words(shortcut.id));
+        if (!has_words(words, text)) continue;
         const bool is_held = shortcut.mode == Shortcut::Mode::while_held;
         entries.push_back({.name = shortcut.name,
                            .group = shortcut.group,

@@ -93,6 +93,17 @@ void add_painting(std::vector<PaletteEntry>& entries, const Model& model, std::s
     for (const uint8_t group : known_groups(model))
         groups.add(sentence("Group ", int(group), ' ', group_of(model.session.groups, group).name),
                    "Groups: paints and traces with it", Set{sentence(R"({"probe":{"group":)", int(group), "}}")});
+    Listing changes(entries, model, text);
+    for (const uint8_t group : known_groups(model)) {
+        const ColorGroup look = group_of(model.session.groups, group);
+        const std::string name = sentence(" group ", int(group), ' ', look.name);
+        const auto change = [&](const char* key, bool is_so) {
+            return Set{sentence(R"({"groups":{")", int(group), R"(":{")", key, "\":", is_so ? "false" : "true", "}}}")};
+        };
+        const bool is_locked = locked_groups(model.session.groups)[group];
+        changes.add((look.visible ? "Hide" : "Show") + name, "Groups", change("visible", look.visible));
+        changes.add((is_locked ? "Unlock" : "Lock") + name, "Groups", change("locked", is_locked));
+    }
 }
 
 /// Adds what gives the volume another look: transfer functions, and looks that the user saved.

@@ -623,6 +623,17 @@ TEST_CASE("the palette finds panels and settings by words, values behind words, 
     CHECK(found("top", "Look from top").action->as<LookFrom>()->camera == "top");
     world.session.groups[4].name = "leaf trace";
     CHECK(found("leaf", "Group 4 leaf trace").action->is<Set>());
+    CHECK(found("hide leaf", "Hide group 4 leaf trace").action->as<Set>()->patch ==
+          R"({"groups":{"4":{"visible":false}}})");
+    CHECK(found("lock group 4", "Lock group 4 leaf trace").action->as<Set>()->patch ==
+          R"({"groups":{"4":{"locked":true}}})");
+    world.session.groups[4].locked = true;
+    CHECK(found("lock group 4", "Unlock group 4 leaf trace").action->as<Set>()->patch ==
+          R"({"groups":{"4":{"locked":false}}})");
+    for (const auto& [words, name] : {std::pair("mask", "Load annotation..."), std::pair("csv", "Export..."),
+                                      std::pair("unit", "Correct the spacing..."),
+                                      std::pair("memory", "Open with options..."), std::pair("video", "Movie...")})
+        CHECK(found(words, name).action->is<ShowDialog>());
     for (const PaletteEntry& entry : palette_entries(world.model, "trans"))
         CHECK_MESSAGE(entry.name.find(".N") == std::string::npos, entry.name, " cannot be completed");
 }
