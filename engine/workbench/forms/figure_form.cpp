@@ -51,9 +51,12 @@ FigureForm suggested_figure(const Model& model, const FigureForm& last)
 ElementsForm suggested_elements(const Model& model, const ElementsForm& last)
 {
     ElementsForm form = last;
-    form.drawn.title.clear();
-    form.drawn.texts.clear();
-    form.next_text.clear();
+    if (form.scan != model.session.volume_path) {
+        form.drawn.title.clear();
+        form.drawn.texts.clear();
+        form.next_text.clear();
+    }
+    form.scan = model.session.volume_path;
     form.probe_voxel = model.probe_voxel;
     return form;
 }

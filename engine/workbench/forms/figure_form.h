@@ -2,6 +2,7 @@
 // The dialog Figure: the file, the size on paper or in pixels, and what is drawn over the picture. Pure, except for
 // check and replaced_files, which read the disk; any thread.
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,8 +30,9 @@ struct ElementsForm {
     DrawnElements drawn;
     std::string next_text;        ///< typed, not yet among the texts
     glm::dvec3 probe_voxel{0.0};  ///< where the next text is put
+    std::filesystem::path scan;   ///< to which title and texts belong
 };
-/// Returns the choices of `last` without its words, with the probe of the present view.
+/// Returns the choices of `last`, its words only if they are of the open scan, with the probe of the present view.
 ElementsForm suggested_elements(const Model& model, const ElementsForm& last);
 /// Adds the typed text, at the probe, to those that are drawn.
 void add_text(ElementsForm& form);

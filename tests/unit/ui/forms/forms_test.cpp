@@ -489,6 +489,13 @@ TEST_CASE("a figure is suggested next to the scan, in the ending of the last one
     form.size.height = 0.0;
     CHECK(why_not(form).starts_with("the size is 85 x 0 pixels; expected 1 to 65536 pixels"));
     CHECK(why_not(suggested_figure(world.model, form)).empty());
+    // Words stay while the scan is open, for the figure's next version.
+    form.elements.drawn.title = "Bellis";
+    form = suggested_figure(world.model, form);
+    CHECK((form.elements.drawn.title == "Bellis" && form.elements.next_text == "pith"));
+    world.session.volume_path = "/scans/stem.tif";
+    form = suggested_figure(world.model, form);
+    CHECK((form.elements.drawn.title.empty() && form.elements.next_text.empty()));
 }
 
 TEST_CASE("a figure and a movie come back from their lines, and say what they cannot be")
