@@ -143,6 +143,7 @@ void follow_task(const FigureTask& task, const Model& model, const glm::uvec2& p
     Session session = model.session;
     session.render.size = pixels;
     session.render.background.a = task.is_transparent ? 0.0 : 1.0;
+    session.view.cut_box = false;  // as in the figure
     const auto panes = [&](const glm::uvec2& size) {
         return panes_of(session.view, model.camera, size, model.volume, model.probe_voxel);
     };
