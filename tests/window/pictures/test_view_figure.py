@@ -202,7 +202,7 @@ class Figure(Seen):
         self.show("Movie...", MOVIE)
         self.click_on("turns the volume", MOVIE)
         self.click_on("goes from view to view", "##Combo_")
-        self.see("a movie of one view", MOVIE)
+        self.see("one view that does not turn stands still", MOVIE)
         for view in ("front", "top"):
             self.click_on("Add a view", MOVIE)
             self.click_on(view, "##Combo_")
