@@ -203,7 +203,7 @@ TEST_CASE("Scale bar, axes and the probe's depth are drawn where they are wanted
                               [](const Label& label) { return label.text.ends_with("at the middle of the view"); }));
 }
 
-TEST_CASE("The words at the probe lie at its left where there is no room at the right")
+TEST_CASE("The words at the probe lie at its left where there is room only there, and are never cut")
 {
     Panes panes;
     panes.world.session.interaction.probe_label = true;
@@ -219,8 +219,13 @@ TEST_CASE("The words at the probe lie at its left where there is no room at the 
     };
     CHECK(at_probe(10.0).anchor.x == 0.0);
     CHECK(at_probe(10.0).at.x > 70.0);  // of the pane's 300 pixels
-    CHECK(at_probe(50.0).anchor.x == 1.0);
-    CHECK(at_probe(50.0).at.x < 150.0);
+    CHECK(at_probe(85.0).anchor.x == 1.0);
+    CHECK(at_probe(85.0).at.x < 255.0);
+    // Without room on either side they are whole, at most 8 pixels a character.
+    const Label middle = at_probe(50.0);
+    CHECK(middle.anchor.x == 0.0);
+    CHECK(middle.at.x + 8.0 * double(middle.text.size()) <= 300.0);
+    CHECK(middle.at.x >= 0.0);
 }
 
 TEST_CASE("What is painted or traced is named beside its colour, in the first pane, as far as there is room")
