@@ -19,7 +19,7 @@ ImportForm suggested_import(const Model& model, const std::filesystem::path& vol
         form.volume = model.session.volume_path.string();
     follow_volume(form);
     const bool is_given = model.volume.spacing_from == Provenance::given || model.volume.unit_from == Provenance::given;
-    if (model.is_open && form.volume == model.session.volume_path.string() && is_given)
+    if (model.is_open && !form.volume.empty() && form.volume == model.session.volume_path.string() && is_given)
         form.voxel_size = form.suggested_size = text_of(VoxelSize{model.volume.spacing, model.volume.unit});
     return form;
 }

@@ -210,7 +210,9 @@ TEST_CASE("an import has the spacing that a person gave the open scan, and that 
     form.voxel_size = "2 um";
     form.volume = "/a/c.nrrd";
     follow_volume(form);
-    CHECK(form.voxel_size == "2 um");  // typed
+    CHECK(form.voxel_size == "2 um");   // typed
+    world.session.volume_path.clear();  // as of a procedural scan, which no project can be made of
+    CHECK(suggested_import(world.model, {}).voxel_size.empty());
 }
 
 TEST_CASE("what an import would make is told from the scan's header, with a free name where one is taken")
